@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace penumbra {
+
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+enum class ParameterType { boolean, integer, real, choice };
+enum class ParameterScale { linear, logarithmic };
+
+/// One parameter of a technique, declared once. The GLSL names, validation, JSON Schema, web form,
+/// README table check and sweep ranges are all derived from this.
+struct Parameter {
+  std::string name;
+  ParameterType type = ParameterType::real;
+  ParameterValue default_value;
+  double minimum = 0.0;
+  double maximum = 1.0;
+  ParameterScale scale = ParameterScale::linear;
+  std::string unit;                  ///< "m", "texels", "degrees", "" for plain numbers
+  std::vector<std::string> choices;  ///< of type choice
+  std::string meaning;
+  bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
+};
+
+/// Fills in defaults and checks every value. Numbers convert where nothing is lost (3 -> 3.0,
+/// 3.0 -> 3, "3" -> 3, "true" -> true). Throws bad_value naming the parameter and what is allowed;
+/// a name that is not declared is an error too.
+ParameterValues complete_parameters(const std::vector<Parameter>& declared,
+                                    const ParameterValues& given);
+
+bool boolean_of(const ParameterValues& values, const std::string& name);
+std::int64_t integer_of(const ParameterValues& values, const std::string& name);
+double real_of(const ParameterValues& values, const std::string& name);
+const std::string& choice_of(const ParameterValues& values, const std::string& name);
+
+}  // namespace penumbra

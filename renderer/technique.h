@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/parameters.h"
+#include "renderer/scene/scene.h"
+
+namespace penumbra {
+
+class PrepareContext;  // renderer/frame/prepare_context.h: what a technique may use while it draws
+class Bindings;        // renderer/vulkan/pipeline.h: shader resources by name
+
+/// What is known of a light's task before anything is allocated.
+struct TechniqueInput {
+  const Scene& scene;
+  const Light& light;
+  const Camera& camera;
+  const ParameterValues& parameters;  ///< complete: every declared parameter has a value
+  std::uint32_t width;                ///< samples of the geometry buffer, supersampling included
+  std::uint32_t height;
+  std::uint32_t light_samples;
+  std::uint64_t seed;
+};
+
+/// What a technique needs for one light; the plan allocates this and nothing else.
+struct Requirements {
+  bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
+  bool adjacency = false;               ///< index buffer of triangles with adjacency
+  bool acceleration_structure = false;  ///< bounding volume hierarchy over the casters
+  std::uint32_t light_points = 1;       ///< points on the extent asked for one by one; 1: its centre
+  bool shade_each_point = false;        ///< light from each point, not from the centre
+  bool random_points = false;           ///< points from a seeded generator, not low-discrepancy
+};
+
+/// A way to find the visibility of one light. An instance serves one light of one render; the core
+/// calls require once, then per frame and batch of light points: prepare, bind, and for every pixel
+/// the technique's GLSL function `float calculate_shadow(ShadowQuery)` (1 lit, 0 occluded).
+class Technique {
+ public:
+  virtual ~Technique() = default;
+
+  /// Declares needs. Throws `unsupported` with the reason where light or scene cannot be served.
+  virtual void require(const TechniqueInput& input, Requirements& needs) = 0;
+
+  /// Records whatever must exist before shading: a map, a mask, a table.
+  virtual void prepare(PrepareContext& context) = 0;
+
+  /// Names the resources that the GLSL reads; checked both ways against reflection.
+  virtual void bind(Bindings& bindings) const = 0;
+};
+
+struct Diagnostic {
+  std::string name;
+  std::string meaning;
+};
+
+/// Everything the rest of the program knows of a technique. Built by `describe_<folder>()`.
+struct TechniqueDescription {
+  std::string id;      ///< the folder's name
+  std::string label;   ///< abbreviation in reports, as the source has it
+  std::string title;   ///< a person's words
+  std::string family;  ///< none, planar, map, volume, hybrid, receiver, traced, truth
+  std::string source;  ///< paper or thesis section
+  std::vector<Parameter> parameters;
+  std::vector<Diagnostic> diagnostics;  ///< pictures by name, from `vec4 draw_diagnostic_<name>`
+  std::string shader;                   ///< path of the GLSL that defines calculate_shadow
+  std::function<std::unique_ptr<Technique>()> create;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "renderer/scene/scene.h"
+
+namespace penumbra::scenes {
+
+struct SceneInfo {
+  std::string id;
+  std::string title;
+  std::string description;
+};
+
+/// Built-in scenes, survey scenes first, in a stable order.
+std::vector<SceneInfo> built_in();
+
+/// Loads SCENE as the contract has it: a built-in id, an imported id (data/scenes/<id>), a path to a
+/// scene JSON, glTF, GLB or OBJ file, or `sweep:OxTxL`. `data` may be empty (no imported scenes).
+/// Throws not_found (field "scene", listing the ids there are) or unreadable naming file and element.
+std::shared_ptr<const Scene> load(const std::string& name, const std::filesystem::path& data = {});
+
+/// Hash of everything in the scene that can change a picture, 32 hexadecimal digits: equal scenes
+/// have equal hashes however they were loaded.
+std::string content_hash(const Scene& scene);
+
+/// Copy of the scene with light keys replaced: {"NAME": {"position": [x,y,z], "intensity": 2,
+/// "extent": {...}}, ...}, the keys of a light in the scene document. Throws bad_value naming the
+/// field (lights.NAME.key).
+Scene with_light_overrides(const Scene& scene, const nlohmann::json& overrides);
+
+}  // namespace penumbra::scenes
