@@ -1,0 +1,54 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/study.h"
+
+namespace penumbra::study {
+
+/// What the page noted beside the ranks; nothing else about the person.
+struct Observations {
+  std::optional<double> active_ms;  ///< page in front and focused
+  std::optional<double> total_ms;
+  std::uint64_t enlarged = 0;  ///< how often a picture was enlarged
+  std::uint64_t flipped = 0;   ///< how often two were flipped in place
+  std::uint64_t blurs = 0;     ///< how often the window lost focus
+  std::uint64_t load_failures = 0;
+  bool swapped_direction = false;  ///< the button "other way round" was used; ranks are after it
+  bool all_same = false;           ///< "all look the same" was chosen
+  std::string started_at;          ///< ISO 8601, the browser's clock; may be empty
+  nlohmann::json display = nlohmann::json::object();  ///< window, screen, device_pixel_ratio
+};
+
+struct Answer {
+  std::string answer_id;     ///< UUID, lower case
+  std::vector<int> shelves;  ///< per slot, 0 most realistic; empty for digits
+  std::vector<int> digits;   ///< per slot, as typed, 1 most realistic; empty for shelves
+  int difficulty = 0;        ///< 1 (hard to see) .. 5 (easy); 0 on a practice page without one
+  Observations observations;
+
+  /// Whichever of the two was given: equal numbers are equal ranks, the lowest is most realistic.
+  const std::vector<int>& order() const { return shelves.empty() ? digits : shelves; }
+};
+
+/// Checks the body of PUT .../pages/{page}:
+///   answer_id    UUID
+///   shelves      {"0": 0, "1": 2, ...}: each slot's shelf, 0 .. slots - 1    (widget shelves)
+///   digits       {"0": 1, "1": 9, ...}: each slot's digit, 1 .. 9            (widget numeric)
+///   difficulty   1 .. 5, required unless `practice`
+///   active_ms, total_ms, enlarged, flipped, blurs, load_failures, swapped_direction, all_same,
+///   started_at, window {width, height}, screen {width, height}, device_pixel_ratio   optional
+/// Every slot is required. Throws bad_value naming the field: `shelves.3`, `difficulty`, ...
+Answer parse_answer(const nlohmann::json& body, const Study& study, std::size_t slots,
+                    bool practice = false);
+
+/// Equal but for key order and number notation: the same answer sent again.
+bool same_answer(const nlohmann::json& a, const nlohmann::json& b);
+
+/// Twice the mid-rank of each value (integers, so that ties are exact): 3, 1, 1 gives 6, 3, 3.
+std::vector<int> doubled_mid_ranks(const std::vector<int>& values);
+
+}  // namespace penumbra::study

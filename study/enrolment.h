@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "study/study.h"
+
+namespace penumbra::study {
+
+enum class PageKind { practice, ranking, repeat };
+
+/// One page as one participant sees it.
+struct PlannedPage {
+  PageKind kind = PageKind::ranking;
+  std::size_t page = 0;            ///< index into Study::pages; unused for the practice page
+  std::vector<std::size_t> slots;  ///< slots[s] is the index of the picture at position s
+};
+
+/// What a person is shown, in order. A pure function of study, seed and place.
+struct EnrolmentPlan {
+  std::uint64_t seed = 0;  ///< the study's, recorded with every participant
+  std::size_t place = 0;
+  std::vector<PlannedPage> pages;
+};
+
+/// Where the holder of a place stands: still answering, done, or gone.
+enum class PlaceState { open, completed, dropped };
+
+/// The place of the next person: the first that was dropped, else a new one. `places[p]` is the
+/// state of place p.
+std::size_t next_place(std::span<const PlaceState> places);
+
+/// Order of pages and of pictures for a place. All places of a study share one `seed`; consecutive
+/// places walk through Williams squares (Williams 1949), so that over places 0..N-1 how often a
+/// page or picture stands at a position differs by at most one, and over whole squares every
+/// picture follows every other equally often. Squares are relabelled and their rows shuffled from
+/// the seed, each page on its own, so that the order of pages tells nothing about the order of
+/// pictures.
+EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t place);
+
+/// The page behind a planned page (the practice page where it is one).
+const Page& page_of(const Study& study, const PlannedPage& planned);
+
+}  // namespace penumbra::study

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/answer.h"
+#include "study/enrolment.h"
+#include "study/study.h"
+
+namespace penumbra::study {
+
+/// A row of responses.csv: one picture on one page of one participant.
+struct ResponseRow {
+  std::string study;
+  std::string study_hash;
+  std::string participant;  ///< pseudonym
+  int page_index = 0;       ///< position at which the participant saw the page, from 0
+  int repeat = 0;           ///< 0 first showing, 1 second
+  std::string scene;        ///< the page's id, which is the scene's unless the study says otherwise
+  std::string technique;    ///< the picture's id in the study
+  std::string preset;       ///< technique or preset that was rendered
+  std::string parameters_hash;
+  std::optional<int> slot;  ///< position on the page, from 0
+  double rank = 0.0;        ///< rank_1_is_most_realistic, mid-rank where equal
+  std::optional<int> shelf;
+  std::optional<int> digit;
+  std::optional<int> difficulty;
+  std::optional<double> weight;
+  std::optional<double> active_ms;
+  std::optional<double> total_ms;
+  std::optional<int> enlarged;
+  std::optional<int> flipped;
+  std::optional<bool> swapped_direction;
+  std::string flags;  ///< names separated by blanks
+  bool included = true;
+  std::string started_at;
+  std::string answered_at;
+};
+
+/// Rows of one answered page. `page_index` is the position in the plan.
+std::vector<ResponseRow> response_rows(const Study& study, const std::string& hash,
+                                       const std::string& participant, const PlannedPage& planned,
+                                       int page_index, const Answer& answer,
+                                       const std::string& answered_at);
+
+/// Name and meaning of every column, in the order of the file: header, writer, parser and
+/// codebook.csv are derived from it.
+struct Column {
+  std::string name;
+  std::string type;
+  std::string meaning;
+};
+const std::vector<Column>& response_columns();
+
+/// RFC 4180 (CRLF), UTF-8. Text cells that begin with = + - @ tab, carriage return or NUL get a
+/// leading apostrophe, so that no spreadsheet runs them.
+std::string write_responses(const std::vector<ResponseRow>& rows);
+std::string write_codebook();
+
+/// One cell as the writer puts it: quoted where needed, neutralised where dangerous.
+std::string csv_text(std::string_view cell);
+
+/// Reads what write_responses wrote, and any CSV with at least the columns participant, scene,
+/// technique, rank_1_is_most_realistic and difficulty_1_hard_to_see_5_easy, in any order; further
+/// columns are ignored, a byte order mark and bare line feeds accepted. Throws unreadable whose
+/// field is the column and whose message gives line and column.
+std::vector<ResponseRow> parse_responses(std::string_view text);
+
+}  // namespace penumbra::study

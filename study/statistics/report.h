@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "study/responses.h"
+#include "study/study.h"
+
+namespace penumbra::study {
+
+struct ReportOptions {
+  AnalysisPlan plan;
+  std::map<std::string, std::string> labels;  ///< abbreviation per picture id, for the text table
+  std::string study_id;                       ///< put into the report where given
+  std::string study_hash;
+};
+
+/// Options of a study: its analysis plan, the labels of its pictures, its id and hash.
+ReportOptions report_options(const Study& study);
+
+/// The document of `penumbra statistics --json` and results.json. Blocks are participants: the
+/// pooled part works on each participant's mean mid-ranks. Rows of repeated pages only measure
+/// reliability. What cannot be computed is null and a `reason` stands beside it.
+nlohmann::json statistics_report(const std::vector<ResponseRow>& rows,
+                                 const ReportOptions& options);
+
+/// Ordered means in their subset columns, laid out like van Sambeek 2007, tables 4.3 to 4.9: one
+/// table per scene and one for all scenes, of the inclusion set `set`.
+std::string statistics_table(const nlohmann::json& report, const ReportOptions& options,
+                             const std::string& set = "all");
+
+/// Flags per participant: [{"participant","flag","value","threshold","reason"}].
+nlohmann::json screening_flags(const std::vector<ResponseRow>& rows, const Screening& screening);
+
+}  // namespace penumbra::study

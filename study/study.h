@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Surveys: what is shown to whom, what an answer is, and what it means. Pure functions, no I/O.
+namespace penumbra::study {
+
+/// A text by language ("en" -> "..."). Every text of a study has all of the study's languages.
+using Texts = std::map<std::string, std::string>;
+
+/// How participants give their ranks: pictures on shelves, or typed digits as in 2007.
+enum class Widget { shelves, numeric };
+
+/// Where the converged picture of a page appears: nowhere, among the pictures to rank and unmarked,
+/// beside them and marked, or both.
+enum class ReferenceUse { none, hidden, shown, both };
+
+/// A picture to rank.
+struct Picture {
+  std::string id;         ///< name in exports, unique on its page; the technique's unless given
+  std::string technique;  ///< technique or preset, as the render service resolves it
+  nlohmann::json parameters = nlohmann::json::object();  ///< override the preset's
+  std::string label;  ///< abbreviation in tables, the id unless given
+};
+
+/// One page: pictures of one scene.
+struct Page {
+  std::string id;  ///< unique; the scene's id unless given
+  std::string scene;
+  std::string camera;  ///< empty: the scene's first
+  ReferenceUse reference = ReferenceUse::none;
+  std::vector<Picture> pictures;  ///< to rank, the hidden reference included, in the file's order
+};
+
+/// A page with a known answer, shown first and never counted.
+struct Practice {
+  Page page;  ///< its pictures stand in the order of the right answer,
+              ///< most realistic first
+};
+
+struct PictureSettings {
+  std::uint32_t width = 600;           ///< pixels
+  std::uint32_t height = 600;          ///< pixels
+  std::uint32_t supersampling = 4;     ///< 1, 4 or 16
+  std::uint32_t light_samples = 1024;  ///< rays per pixel and light
+  std::uint64_t seed = 1;
+};
+
+struct Consent {
+  std::string version;
+  Texts text;
+};
+
+/// "How hard is it to see a difference": five steps, index 0 is answer 1 (hard to see).
+struct Difficulty {
+  Texts question;
+  std::vector<Texts> labels;  ///< five
+};
+
+struct Option {
+  std::string id;
+  Texts text;
+};
+
+/// A question about the participant, asked once.
+struct Demographic {
+  std::string id;
+  Texts question;
+  std::vector<Option> options;
+  bool required = false;
+};
+
+/// Thresholds of the flags (never silent changes); defaults as in docs of the study format.
+struct Screening {
+  double inverted_rho = -0.5;       ///< mean leave-one-out rho at or below: scale read backwards
+  double inverted_share = 0.8;      ///< ... and negative on at least this share of pages
+  double page_inverted_rho = -0.7;  ///< one page at or below, of an otherwise positive person
+  double unreliable_rho = 0.2;      ///< mean rho below
+  double unreliable_tau = 0.3;      ///< tau-b between the showings of a repeated page below
+  double flat_share = 0.5;          ///< all equal on more than this share of pages
+  double fast_seconds = 2.0;        ///< active seconds per picture below
+  double fast_share = 0.5;          ///< ... or below this share of the median participant
+};
+
+/// Frozen with the study, so that the analysis is chosen before the answers are seen.
+struct AnalysisPlan {
+  double alpha = 0.05;
+  Screening screening;
+};
+
+struct Completion {
+  std::string code;  ///< shown after the last page is committed
+  std::string url;   ///< may be empty
+};
+
+struct Study {
+  std::string id;
+  std::vector<std::string> languages;  ///< the first is the default
+  Texts title;
+  Texts introduction;
+  Consent consent;
+  Widget widget = Widget::shelves;
+  Texts question;
+  Texts best_label;   ///< most realistic end
+  Texts worst_label;  ///< least realistic end
+  Difficulty difficulty;
+  PictureSettings picture;
+  std::optional<Practice> practice;
+  std::vector<Page> pages;
+  std::vector<std::size_t> repeats;  ///< indices of pages that are shown a second time, at the end
+  std::vector<Demographic> demographics;
+  std::uint32_t minimum_window_width = 0;   ///< CSS pixels
+  std::uint32_t minimum_window_height = 0;  ///< CSS pixels
+  bool phones_allowed = true;
+  AnalysisPlan analysis;
+  std::vector<std::string> id_parameters;  ///< of the page's address, kept with the participant
+  Completion completion;
+  std::uint32_t quota = 0;  ///< completed participants after which nobody enters; 0: no limit
+  nlohmann::json document;  ///< what was parsed
+};
+
+/// Parses and checks a study document (schema/study.schema.json, then what a schema cannot say).
+/// Throws bad_value whose field is the path of what is wrong, e.g. `pages[2].techniques[0]`.
+Study parse_study(const nlohmann::json& document);
+
+/// The same from text; throws bad_value naming line and column where it is no JSON.
+Study parse_study(const std::string& text);
+
+/// SHA-256 of the canonical document (keys sorted, no blanks), 64 hexadecimal digits: two files
+/// with the same meaning but other blanks or key order have the same hash.
+std::string study_hash(const Study& study);
+
+/// Bodies of POST /api/v1/renders for one page: pictures[i] in the page's order, and the reference
+/// where the page shows it.
+struct PageRenders {
+  std::vector<nlohmann::json> pictures;
+  std::optional<nlohmann::json> shown_reference;
+};
+PageRenders page_renders(const Study& study, const Page& page);
+
+/// Every distinct render body that the study needs, practice page included, in order of pages.
+std::vector<nlohmann::json> all_renders(const Study& study);
+
+/// What the participant's page needs in one language and may know: texts, labels, widget, window,
+/// demographics; nothing that tells techniques, scenes, thresholds or the completion code. An
+/// unknown language falls back to the study's first.
+nlohmann::json participant_texts(const Study& study, const std::string& language);
+
+/// The embedded JSON Schema of study documents.
+const std::string& study_schema();
+
+}  // namespace penumbra::study
