@@ -17,17 +17,24 @@ enum class ParameterScale { linear, logarithmic };
 /// One parameter of a technique, declared once. The GLSL names, validation, JSON Schema, web form,
 /// README table check and sweep ranges are all derived from this.
 struct Parameter {
-  std::string name;
+  // Empty initialisers let declarations leave out what does not apply, by name.
+  std::string name{};
   ParameterType type = ParameterType::real;
-  ParameterValue default_value;
+  ParameterValue default_value{};
   double minimum = 0.0;
   double maximum = 1.0;
   ParameterScale scale = ParameterScale::linear;
-  std::string unit;                  ///< "m", "texels", "degrees", "" for plain numbers
-  std::vector<std::string> choices;  ///< of type choice
-  std::string meaning;
+  std::string unit{};                  ///< "m", "texels", "degrees", "" for plain numbers
+  std::vector<std::string> choices{};  ///< of type choice
+  std::string meaning{};
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
 };
+
+/// The value as people write it: "true", "3", "0.25" (shortest that reads back equal), "linear".
+std::string to_text(const ParameterValue& value);
+
+/// `given` in the declared type, as complete_parameters converts and checks it.
+ParameterValue checked_value(const Parameter& parameter, const ParameterValue& given);
 
 /// Fills in defaults and checks every value. Numbers convert where nothing is lost (3 -> 3.0,
 /// 3.0 -> 3, "3" -> 3, "true" -> true). Throws bad_value naming the parameter and what is allowed;
@@ -35,6 +42,8 @@ struct Parameter {
 ParameterValues complete_parameters(const std::vector<Parameter>& declared,
                                     const ParameterValues& given);
 
+/// Values of completed parameters. A name or type other than declared is a defect of the caller:
+/// std::logic_error.
 bool boolean_of(const ParameterValues& values, const std::string& name);
 std::int64_t integer_of(const ParameterValues& values, const std::string& name);
 double real_of(const ParameterValues& values, const std::string& name);
