@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,6 +20,7 @@ struct RenderLimits {
   static constexpr std::uint32_t max_size = 8192;          ///< pixels, width or height
   static constexpr std::uint32_t max_light_samples = 65536;
   static constexpr std::uint32_t max_frames = 1000;
+  static constexpr std::array<std::uint32_t, 3> supersampling{1, 4, 16};  ///< samples per pixel
 };
 
 /// One picture. The result is a pure function of this, the device and the version of the renderer.
