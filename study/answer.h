@@ -13,14 +13,12 @@ namespace penumbra::study {
 struct Observations {
   std::optional<double> active_ms;  ///< page in front and focused
   std::optional<double> total_ms;
-  std::uint64_t enlarged = 0;  ///< how often a picture was enlarged
-  std::uint64_t flipped = 0;   ///< how often two were flipped in place
-  std::uint64_t blurs = 0;     ///< how often the window lost focus
-  std::uint64_t load_failures = 0;
-  bool swapped_direction = false;  ///< the button "other way round" was used; ranks are after it
-  bool all_same = false;           ///< "all look the same" was chosen
-  std::string started_at;          ///< ISO 8601, the browser's clock; may be empty
-  nlohmann::json display = nlohmann::json::object();  ///< window, screen, device_pixel_ratio
+  int enlargements = 0;  ///< how often a picture was enlarged
+  int flips = 0;         ///< how often two were flipped in place
+  int swaps = 0;         ///< uses of the button "other way round"; ranks are those after it
+  int blurs = 0;         ///< how often the window lost focus
+  int load_failures = 0;
+  bool all_same = false;  ///< "all look the same" was chosen
 };
 
 struct Answer {
@@ -39,8 +37,9 @@ struct Answer {
 ///   shelves      {"0": 0, "1": 2, ...}: each slot's shelf, 0 .. slots - 1    (widget shelves)
 ///   digits       {"0": 1, "1": 9, ...}: each slot's digit, 1 .. 9            (widget numeric)
 ///   difficulty   1 .. 5, required unless `practice`
-///   active_ms, total_ms, enlarged, flipped, blurs, load_failures, swapped_direction, all_same,
-///   started_at, window {width, height}, screen {width, height}, device_pixel_ratio   optional
+///   active_ms, total_ms, enlargements, flips, swaps, blurs, load_failures, all_same,
+///   order_shown [slot..], window {width, height}, screen {width, height}, device_pixel_ratio,
+///   started_at, answered_at (ISO 8601, the browser's clock)    optional
 /// Every slot is required. Throws bad_value naming the field: `shelves.3`, `difficulty`, ...
 Answer parse_answer(const nlohmann::json& body, const Study& study, std::size_t slots,
                     bool practice = false);

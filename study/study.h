@@ -103,11 +103,12 @@ struct Study {
   std::vector<std::string> languages;  ///< the first is the default
   Texts title;
   Texts introduction;
+  Texts thanks;
   Consent consent;
   Widget widget = Widget::shelves;
   Texts question;
-  Texts best_label;   ///< most realistic end
-  Texts worst_label;  ///< least realistic end
+  Texts most_label;   ///< most realistic end
+  Texts least_label;  ///< least realistic end
   Difficulty difficulty;
   PictureSettings picture;
   std::optional<Practice> practice;
@@ -146,10 +147,13 @@ PageRenders page_renders(const Study& study, const Page& page);
 /// Every distinct render body that the study needs, practice page included, in order of pages.
 std::vector<nlohmann::json> all_renders(const Study& study);
 
-/// What the participant's page needs in one language and may know: texts, labels, widget, window,
-/// demographics; nothing that tells techniques, scenes, thresholds or the completion code. An
-/// unknown language falls back to the study's first.
-nlohmann::json participant_texts(const Study& study, const std::string& language);
+/// What the participant's page may know before anybody has agreed: {"study", "consent_version",
+/// "languages", "texts": {language: {"title", "introduction", "consent", "question", "most_label",
+/// "least_label", "difficulty_question", "difficulty_labels": [5], "thanks"}}, "widget",
+/// "page_count", "minimum_window": {"width", "height"} | null, "phones_allowed", "id_parameters",
+/// "demographics": [{"id", "required", "question": {language: text}, "options": [{"id",
+/// "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
+nlohmann::json welcome_document(const Study& study);
 
 /// The embedded JSON Schema of study documents.
 const std::string& study_schema();

@@ -1,0 +1,77 @@
+#include "study/enrolment.h"
+
+#include <algorithm>
+
+#include "study/random.h"
+
+namespace penumbra::study {
+
+namespace {
+
+/// Row `row` of the square of `count` treatments in which, over all rows, each follows each other
+/// equally often (Williams 1949): 0, 1, n-1, 2, n-2, ... shifted by the row. With odd `count` that
+/// holds only together with the mirrored rows.
+std::vector<std::size_t> williams_row(std::size_t count, std::size_t row, bool mirrored) {
+  std::vector<std::size_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t step = i % 2 == 1 ? (i + 1) / 2 : (count - i / 2) % count;
+    order[i] = (step + row) % count;
+  }
+  if (mirrored) std::reverse(order.begin(), order.end());
+  return order;
+}
+
+/// Order of `count` things for a place. Places n*b .. n*b+n-1 take the rows of one square, so
+/// within any run from place 0 each thing stands at each position equally often, give or take one.
+std::vector<std::size_t> balanced_order(std::size_t count, std::uint64_t seed, std::uint32_t stream,
+                                        std::size_t place) {
+  const std::size_t block = place / count;
+  const bool odd = count % 2 == 1;
+  // The two squares of an odd count share their labels, or their balance would be lost.
+  const std::size_t labelling = odd ? block / 2 : block;
+  const auto labels = Random(seed, 2 * stream, labelling).permutation(count);
+  const auto rows = Random(seed, 2 * stream + 1, block).permutation(count);
+  auto order = williams_row(count, rows[place % count], odd && block % 2 == 1);
+  for (std::size_t& item : order) item = labels[item];
+  return order;
+}
+
+}  // namespace
+
+std::size_t next_place(std::span<const PlaceState> places) {
+  const auto free = std::find(places.begin(), places.end(), PlaceState::dropped);
+  return static_cast<std::size_t>(free - places.begin());
+}
+
+EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t place) {
+  EnrolmentPlan plan{seed, place, {}};
+  // Streams: 0 order of pages, 1 practice, 2 order of repeats, then one per page and repeat.
+  const auto first_stream = std::uint32_t{3};
+  const auto pages = static_cast<std::uint32_t>(study.pages.size());
+  if (study.practice) {
+    const std::size_t count = study.practice->page.pictures.size();
+    plan.pages.push_back({PageKind::practice, 0, balanced_order(count, seed, 1, place)});
+  }
+  for (const std::size_t page : balanced_order(study.pages.size(), seed, 0, place)) {
+    const auto stream = first_stream + static_cast<std::uint32_t>(page);
+    plan.pages.push_back({PageKind::ranking, page,
+                          balanced_order(study.pages[page].pictures.size(), seed, stream, place)});
+  }
+  if (!study.repeats.empty()) {
+    for (const std::size_t index : balanced_order(study.repeats.size(), seed, 2, place)) {
+      const std::size_t page = study.repeats[index];
+      const auto stream = first_stream + pages + static_cast<std::uint32_t>(page);
+      plan.pages.push_back(
+          {PageKind::repeat, page,
+           balanced_order(study.pages[page].pictures.size(), seed, stream, place)});
+    }
+  }
+  return plan;
+}
+
+const Page& page_of(const Study& study, const PlannedPage& planned) {
+  return planned.kind == PageKind::practice ? study.practice.value().page
+                                            : study.pages.at(planned.page);
+}
+
+}  // namespace penumbra::study

@@ -1,0 +1,338 @@
+#include "study/study.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "renderer/error.h"
+#include "renderer/render.h"
+#include "study/study_schema.h"
+
+namespace penumbra::study {
+
+namespace {
+
+using nlohmann::json;
+
+std::string indexed(const std::string& path, std::size_t index) {
+  return path + "[" + std::to_string(index) + "]";
+}
+
+/// Reads texts and checks that they have the study's languages, no more and no fewer.
+class TextReader {
+ public:
+  explicit TextReader(const std::vector<std::string>& languages_) : languages(languages_) {}
+
+  Texts read(const json& value, const std::string& path) const {
+    auto texts = value.get<Texts>();
+    for (const std::string& language : languages) {
+      if (!texts.contains(language)) {
+        throw bad_value(path + "." + language, "the study has this language; the text is missing");
+      }
+    }
+    for (const auto& [language, unused] : texts) {
+      if (std::find(languages.begin(), languages.end(), language) == languages.end()) {
+        throw bad_value(path + "." + language, "not one of the study's languages");
+      }
+    }
+    return texts;
+  }
+
+ private:
+  const std::vector<std::string>& languages;
+};
+
+Picture read_picture(const json& value) {
+  Picture picture;
+  if (value.is_string()) {
+    picture.technique = value.get<std::string>();
+  } else {
+    picture.technique = value.at("technique").get<std::string>();
+    picture.parameters = value.value("parameters", json::object());
+  }
+  const json& keys = value.is_object() ? value : json::object();
+  picture.id = keys.value("id", picture.technique);
+  picture.label = keys.value("label", picture.id);
+  return picture;
+}
+
+std::vector<Picture> read_pictures(const json& list, const std::string& path) {
+  std::vector<Picture> pictures;
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    pictures.push_back(read_picture(list[i]));
+    if (!ids.insert(pictures.back().id).second) {
+      throw bad_value(indexed(path, i), "two pictures are called `" + pictures.back().id +
+                                            "`; give one of them another id");
+    }
+  }
+  return pictures;
+}
+
+ReferenceUse read_reference(const std::string& use) {
+  if (use == "hidden") return ReferenceUse::hidden;
+  if (use == "shown") return ReferenceUse::shown;
+  return use == "both" ? ReferenceUse::both : ReferenceUse::none;
+}
+
+Page read_page(const json& value, const json& common_techniques, const std::string& path) {
+  Page page;
+  page.scene = value.at("scene").get<std::string>();
+  page.id = value.value("id", page.scene);
+  page.camera = value.value("camera", "");
+  page.reference = read_reference(value.value("reference", ""));
+  const bool own = value.contains("techniques");
+  const std::string list_path = own ? path + ".techniques" : "techniques";
+  page.pictures = read_pictures(own ? value.at("techniques") : common_techniques, list_path);
+  if (page.reference == ReferenceUse::hidden || page.reference == ReferenceUse::both) {
+    for (const Picture& picture : page.pictures) {
+      if (picture.id == "reference") {
+        throw bad_value(path + ".reference", "the techniques already list `reference`");
+      }
+    }
+    page.pictures.push_back({"reference", "reference", json::object(), "REF"});
+  }
+  if (page.pictures.size() < 2) {
+    throw bad_value(list_path, "a page needs at least two pictures to rank");
+  }
+  return page;
+}
+
+void read_pages(const json& document, Study& study) {
+  std::set<std::string> ids;
+  const json& pages = document.at("pages");
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    const std::string path = indexed("pages", i);
+    study.pages.push_back(read_page(pages[i], document.at("techniques"), path));
+    if (!ids.insert(study.pages.back().id).second) {
+      throw bad_value(path + ".id", "two pages are called `" + study.pages.back().id + "`");
+    }
+  }
+  const json repeats = document.value("repeats", json::array());
+  for (std::size_t i = 0; i < repeats.size(); ++i) {
+    const auto id = repeats[i].get<std::string>();
+    const auto page = std::find_if(study.pages.begin(), study.pages.end(),
+                                   [&](const Page& candidate) { return candidate.id == id; });
+    if (page == study.pages.end()) throw bad_value(indexed("repeats", i), "no page is called so");
+    study.repeats.push_back(static_cast<std::size_t>(page - study.pages.begin()));
+  }
+  if (document.contains("practice")) {
+    study.practice = Practice{read_page(document.at("practice"), json(), "practice")};
+    study.practice->page.id = "practice";
+  }
+}
+
+void read_picture_settings(const json& value, PictureSettings& settings) {
+  const auto read = [&](const char* key, std::uint32_t& target, std::uint32_t maximum) {
+    const auto number = value.value(key, std::uint64_t{target});
+    if (number > maximum) {
+      throw bad_value(std::string("picture.") + key, "at most " + std::to_string(maximum));
+    }
+    target = static_cast<std::uint32_t>(number);
+  };
+  read("width", settings.width, RenderLimits::max_size);
+  read("height", settings.height, RenderLimits::max_size);
+  read("supersampling", settings.supersampling, 16);
+  read("light_samples", settings.light_samples, RenderLimits::max_light_samples);
+  settings.seed = value.value("seed", settings.seed);
+}
+
+void read_demographics(const json& list, const TextReader& texts, Study& study) {
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string path = indexed("demographics", i);
+    Demographic item;
+    item.id = list[i].at("id").get<std::string>();
+    if (!ids.insert(item.id).second) throw bad_value(path + ".id", "used twice");
+    item.question = texts.read(list[i].at("question"), path + ".question");
+    item.required = list[i].value("required", false);
+    std::set<std::string> option_ids;
+    const json& options = list[i].at("options");
+    for (std::size_t j = 0; j < options.size(); ++j) {
+      const std::string option_path = indexed(path + ".options", j);
+      const auto id = options[j].at("id").get<std::string>();
+      if (!option_ids.insert(id).second) throw bad_value(option_path + ".id", "used twice");
+      item.options.push_back({id, texts.read(options[j].at("text"), option_path + ".text")});
+    }
+    study.demographics.push_back(std::move(item));
+  }
+}
+
+void read_screening(const json& value, Screening& screening) {
+  const std::array<std::pair<const char*, double*>, 8> members{{
+      {"inverted_rho", &screening.inverted_rho},
+      {"inverted_share", &screening.inverted_share},
+      {"page_inverted_rho", &screening.page_inverted_rho},
+      {"unreliable_rho", &screening.unreliable_rho},
+      {"unreliable_tau", &screening.unreliable_tau},
+      {"flat_share", &screening.flat_share},
+      {"fast_seconds", &screening.fast_seconds},
+      {"fast_share", &screening.fast_share},
+  }};
+  for (const auto& [name, target] : members) *target = value.value(name, *target);
+}
+
+void read_texts(const json& document, const TextReader& texts, Study& study) {
+  study.title = texts.read(document.at("title"), "title");
+  study.introduction = texts.read(document.at("introduction"), "introduction");
+  study.thanks = texts.read(document.at("thanks"), "thanks");
+  study.consent.version = document.at("consent").at("version").get<std::string>();
+  study.consent.text = texts.read(document.at("consent").at("text"), "consent.text");
+  study.question = texts.read(document.at("question"), "question");
+  study.most_label = texts.read(document.at("labels").at("most"), "labels.most");
+  study.least_label = texts.read(document.at("labels").at("least"), "labels.least");
+  const json& difficulty = document.at("difficulty");
+  study.difficulty.question = texts.read(difficulty.at("question"), "difficulty.question");
+  for (std::size_t i = 0; i < difficulty.at("labels").size(); ++i) {
+    study.difficulty.labels.push_back(
+        texts.read(difficulty.at("labels")[i], indexed("difficulty.labels", i)));
+  }
+}
+
+json render_body(const Study& study, const Page& page, const Picture& picture) {
+  json body = {{"scene", page.scene},
+               {"technique", picture.technique},
+               {"parameters", picture.parameters},
+               {"width", study.picture.width},
+               {"height", study.picture.height},
+               {"supersampling", study.picture.supersampling},
+               {"light_samples", study.picture.light_samples},
+               {"seed", study.picture.seed}};
+  if (!page.camera.empty()) body["camera"] = page.camera;
+  return body;
+}
+
+}  // namespace
+
+Study parse_study(const json& document) {
+  check_study_schema(document);
+  Study study;
+  study.document = document;
+  study.document.erase("$schema");  // tells editors where the schema is, and nothing of the study
+  study.id = document.at("id").get<std::string>();
+  study.languages = document.at("languages").get<std::vector<std::string>>();
+  const TextReader texts(study.languages);
+  read_texts(document, texts, study);
+  if (document.value("widget", "shelves") == "numeric") study.widget = Widget::numeric;
+  read_picture_settings(document.value("picture", json::object()), study.picture);
+  read_pages(document, study);
+  read_demographics(document.value("demographics", json::array()), texts, study);
+  if (document.contains("minimum_window")) {
+    study.minimum_window_width = document["minimum_window"].at("width").get<std::uint32_t>();
+    study.minimum_window_height = document["minimum_window"].at("height").get<std::uint32_t>();
+  }
+  study.phones_allowed = document.value("phones_allowed", true);
+  const json analysis = document.value("analysis", json::object());
+  study.analysis.alpha = analysis.value("alpha", study.analysis.alpha);
+  read_screening(analysis.value("screening", json::object()), study.analysis.screening);
+  study.id_parameters = document.value("id_parameters", std::vector<std::string>{});
+  const json completion = document.value("completion", json::object());
+  study.completion = {completion.value("code", ""), completion.value("url", "")};
+  study.quota = document.value("quota", 0u);
+  return study;
+}
+
+Study parse_study(const std::string& text) {
+  json document;
+  try {
+    document = json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw bad_value("", std::string("not JSON: ") + error.what());
+  } catch (const json::out_of_range& error) {
+    throw bad_value("", std::string("number out of range: ") + error.what());
+  }
+  return parse_study(document);
+}
+
+std::string study_hash(const Study& study) {
+  const std::string canonical = study.document.dump();
+  std::array<unsigned char, 32> digest{};
+  unsigned length = 0;
+  if (EVP_Digest(canonical.data(), canonical.size(), digest.data(), &length, EVP_sha256(),
+                 nullptr) != 1) {
+    throw Error("internal", "SHA-256 is not available");
+  }
+  static constexpr char digits[] = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : digest) {
+    text += digits[byte >> 4];
+    text += digits[byte & 15];
+  }
+  return text;
+}
+
+PageRenders page_renders(const Study& study, const Page& page) {
+  PageRenders renders;
+  for (const Picture& picture : page.pictures) {
+    renders.pictures.push_back(render_body(study, page, picture));
+  }
+  if (page.reference == ReferenceUse::shown || page.reference == ReferenceUse::both) {
+    const Picture reference{"reference", "reference", json::object(), "REF"};
+    renders.shown_reference = render_body(study, page, reference);
+  }
+  return renders;
+}
+
+std::vector<json> all_renders(const Study& study) {
+  std::vector<json> renders;
+  std::set<std::string> seen;
+  const auto add = [&](const json& body) {
+    if (seen.insert(body.dump()).second) renders.push_back(body);
+  };
+  const auto add_page = [&](const Page& page) {
+    const PageRenders of_page = page_renders(study, page);
+    for (const json& body : of_page.pictures) add(body);
+    if (of_page.shown_reference) add(*of_page.shown_reference);
+  };
+  if (study.practice) add_page(study.practice->page);
+  for (const Page& page : study.pages) add_page(page);
+  return renders;
+}
+
+json welcome_document(const Study& study) {
+  json texts = json::object();
+  for (const std::string& language : study.languages) {
+    json difficulty_labels = json::array();
+    for (const Texts& label : study.difficulty.labels) {
+      difficulty_labels.push_back(label.at(language));
+    }
+    texts[language] = {{"title", study.title.at(language)},
+                       {"introduction", study.introduction.at(language)},
+                       {"consent", study.consent.text.at(language)},
+                       {"question", study.question.at(language)},
+                       {"most_label", study.most_label.at(language)},
+                       {"least_label", study.least_label.at(language)},
+                       {"difficulty_question", study.difficulty.question.at(language)},
+                       {"difficulty_labels", difficulty_labels},
+                       {"thanks", study.thanks.at(language)}};
+  }
+  json window = nullptr;
+  if (study.minimum_window_width > 0) {
+    window = {{"width", study.minimum_window_width}, {"height", study.minimum_window_height}};
+  }
+  json demographics = json::array();
+  for (const Demographic& item : study.demographics) {
+    json options = json::array();
+    for (const Option& option : item.options) {
+      options.push_back({{"id", option.id}, {"text", option.text}});
+    }
+    demographics.push_back({{"id", item.id},
+                            {"required", item.required},
+                            {"question", item.question},
+                            {"options", options}});
+  }
+  return {{"study", study.id},
+          {"consent_version", study.consent.version},
+          {"languages", study.languages},
+          {"texts", texts},
+          {"widget", study.widget == Widget::numeric ? "numeric" : "shelves"},
+          {"page_count", study.pages.size() + study.repeats.size() + (study.practice ? 1 : 0)},
+          {"minimum_window", window},
+          {"phones_allowed", study.phones_allowed},
+          {"id_parameters", study.id_parameters},
+          {"demographics", demographics}};
+}
+
+}  // namespace penumbra::study

@@ -1,0 +1,108 @@
+#include "study/study_schema.h"
+
+#include <span>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "renderer/embedded_file.h"
+#include "renderer/error.h"
+#include "study/study.h"
+
+namespace penumbra::study {
+
+std::span<const EmbeddedFile> embedded_files();
+
+namespace {
+
+using nlohmann::json;
+
+const json& schema_document() {
+  static const json document = json::parse(study_schema());
+  return document;
+}
+
+const valijson::Schema& compiled_schema() {
+  static const auto schema = [] {
+    auto result = std::make_unique<valijson::Schema>();
+    valijson::SchemaParser parser;
+    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schema_document()), *result);
+    return result;
+  }();
+  return *schema;
+}
+
+std::string member_path(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+const json& resolve(const json& schema) {
+  if (!schema.contains("$ref")) return schema;
+  const auto pointer = schema.at("$ref").get<std::string>().substr(1);
+  return schema_document().at(json::json_pointer(pointer));
+}
+
+/// Walks document and schema together, so that an unknown key is named by its own path: the
+/// validator names only the object around it. The schema bounds the depth.
+void refuse_unknown_keys(const json& value, const json& schema_or_reference,
+                         const std::string& path) {
+  const json& schema = resolve(schema_or_reference);
+  if (value.is_array() && schema.contains("items")) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      refuse_unknown_keys(value[i], schema.at("items"), path + "[" + std::to_string(i) + "]");
+    }
+  }
+  if (!value.is_object() || !schema.contains("properties")) return;
+  const json& properties = schema.at("properties");
+  for (const auto& [key, member] : value.items()) {
+    const auto known = properties.find(key);
+    if (known == properties.end()) {
+      std::string names;
+      for (const auto& [name, unused] : properties.items()) {
+        names += (names.empty() ? "" : ", ") + name;
+      }
+      throw bad_value(member_path(path, key), "unknown key; known are " + names);
+    }
+    refuse_unknown_keys(member, *known, member_path(path, key));
+  }
+}
+
+/// The validator's context is ["<root>", "[pages]", "[2]"].
+std::string path_of(const std::vector<std::string>& context) {
+  std::string path;
+  for (const std::string& part : context) {
+    if (part.empty() || part.front() != '[') continue;
+    const std::string name = part.substr(1, part.size() - 2);
+    const bool index = name.find_first_not_of("0123456789") == std::string::npos;
+    path = index ? path + part : member_path(path, name);
+  }
+  return path;
+}
+
+}  // namespace
+
+const std::string& study_schema() {
+  static const std::string text(embedded_files().front().text);
+  return text;
+}
+
+void check_study_schema(const json& document) {
+  if (!document.is_object()) throw bad_value("", "a study is a JSON object");
+  refuse_unknown_keys(document, schema_document(), "");
+  valijson::Validator validator;
+  valijson::ValidationResults results;
+  if (validator.validate(compiled_schema(), valijson::adapters::NlohmannJsonAdapter(document),
+                         &results)) {
+    return;
+  }
+  valijson::ValidationResults::Error error;
+  valijson::ValidationResults::Error innermost;
+  while (results.popError(error)) {
+    if (error.context.size() > innermost.context.size()) innermost = error;
+  }
+  throw bad_value(path_of(innermost.context), innermost.description);
+}
+
+}  // namespace penumbra::study
