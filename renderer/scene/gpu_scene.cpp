@@ -1,0 +1,206 @@
+#include "renderer/scene/gpu_scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <numeric>
+
+#include "renderer/error.h"
+#include "renderer/shaders/shader_types.h"
+
+namespace penumbra {
+namespace {
+
+struct SurfaceVertex {
+  glm::vec3 normal;
+  glm::vec2 uv;
+  std::uint32_t color;
+};
+static_assert(sizeof(SurfaceVertex) == 24, "as pipeline.cpp declares the vertex layout");
+
+constexpr std::uint32_t white = 0xffffffffu;
+
+}  // namespace
+
+std::uint32_t pack_unit_vector(const glm::vec3& normal) {
+  const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+  glm::vec2 p = sum > 0.0f ? glm::vec2(normal) / sum : glm::vec2(0.0f);
+  if (normal.z < 0.0f)
+    p = (1.0f - glm::abs(glm::vec2(p.y, p.x))) *
+        glm::vec2(p.x >= 0.0f ? 1.0f : -1.0f, p.y >= 0.0f ? 1.0f : -1.0f);
+  return glm::packSnorm2x16(p);
+}
+
+vulkan::Buffer upload(vulkan::Device& device, vulkan::MemoryLedger& ledger, const std::string& name,
+                      const void* data, std::size_t bytes, VkBufferUsageFlags usage) {
+  const std::size_t size = std::max<std::size_t>(bytes, 16);  // an empty scene still binds something
+  vulkan::Buffer buffer(device, ledger, name, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  if (bytes == 0) return buffer;
+  vulkan::MemoryLedger passing;
+  const vulkan::Buffer staging(device, passing, name + " staging", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                               vulkan::MemoryKind::upload);
+  std::memcpy(staging.mapped(), data, bytes);
+  vulkan::run_now(device, [&](VkCommandBuffer commands) {
+    const VkBufferCopy copy{0, 0, bytes};
+    vkCmdCopyBuffer(commands, staging.handle(), buffer.handle(), 1, &copy);
+  });
+  return buffer;
+}
+
+vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledger, const Texture& texture) {
+  vulkan::ImageDescription description;
+  description.format = VK_FORMAT_R8G8B8A8_SRGB;
+  description.width = texture.width;
+  description.height = texture.height;
+  description.levels = static_cast<std::uint32_t>(std::bit_width(std::max(texture.width, texture.height)));
+  description.usage =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  vulkan::Image image(device, ledger, "texture " + texture.name, description);
+  vulkan::MemoryLedger passing;
+  const vulkan::Buffer staging(device, passing, "texture staging", texture.rgba.size(),
+                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vulkan::MemoryKind::upload);
+  std::memcpy(staging.mapped(), texture.rgba.data(), texture.rgba.size());
+  vulkan::run_now(device, [&](VkCommandBuffer commands) {
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {texture.width, texture.height, 1};
+    vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    auto extent = [&](std::uint32_t level) {
+      return VkOffset3D{static_cast<std::int32_t>(std::max(1u, texture.width >> level)),
+                        static_cast<std::int32_t>(std::max(1u, texture.height >> level)), 1};
+    };
+    for (std::uint32_t level = 1; level < description.levels; ++level) {
+      vulkan::global_barrier(commands);
+      VkImageBlit blit{};
+      blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level - 1, 0, 1};
+      blit.srcOffsets[1] = extent(level - 1);
+      blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
+      blit.dstOffsets[1] = extent(level);
+      vkCmdBlitImage(commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, image.handle(),
+                     VK_IMAGE_LAYOUT_GENERAL, 1, &blit, VK_FILTER_LINEAR);
+    }
+  });
+  return image;
+}
+
+GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  const Bounds bounds = world_bounds(*scene_);
+  // A whole number of metres keeps built-in coordinates exact after the move.
+  if (!bounds.empty()) origin_ = glm::round(bounds.center());
+  flatten();
+  constexpr VkBufferUsageFlags vertex = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+  std::vector<std::uint32_t> facets(index_list_.size() / 3);
+  for (std::size_t t = 0; t < facets.size(); ++t) {
+    const glm::vec3 a = position_list_[index_list_[3 * t]];
+    const glm::vec3 b = position_list_[index_list_[3 * t + 1]];
+    const glm::vec3 c = position_list_[index_list_[3 * t + 2]];
+    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+    const double length = glm::length(normal);
+    facets[t] = pack_unit_vector(length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f, 1.0f, 0.0f));
+  }
+  positions_ = upload(device, ledger_, "positions", position_list_.data(), position_list_.size() * 12, vertex);
+  surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(), surface_list_.size(),
+                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  indices_ = upload(device, ledger_, "indices", index_list_.data(), index_list_.size() * 4, index);
+  facets_ = upload(device, ledger_, "facet normals", facets.data(), facets.size() * 4,
+                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  surface_list_ = {};
+  upload_materials(device);
+}
+
+void GpuScene::flatten() {
+  struct Part {
+    std::uint32_t instance, primitive, material;
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> first_vertex;
+  std::size_t vertex_count = 0;
+  for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
+    const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
+    first_vertex.push_back(static_cast<std::uint32_t>(vertex_count));
+    vertex_count += mesh.positions.size();
+    for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
+      parts.push_back({i, p, mesh.primitives[p].material});
+  }
+  if (vertex_count > 0xfffffff0u) throw unsupported("the scene has more than 2^32 vertices");
+  position_list_.reserve(vertex_count);
+  surface_list_.resize(vertex_count * sizeof(SurfaceVertex));
+  auto* surfaces = reinterpret_cast<SurfaceVertex*>(surface_list_.data());
+  for (const Instance& instance : scene_->instances) {
+    const Mesh& mesh = scene_->meshes[instance.mesh];
+    glm::dmat4 world_from_object = instance.world_from_object;
+    world_from_object[3] -= glm::dvec4(origin_, 0.0);
+    const glm::dmat3 normal_matrix = glm::inverse(glm::transpose(glm::dmat3(world_from_object)));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const glm::dvec3 normal = normal_matrix * glm::dvec3(mesh.normals[v]);
+      const double length = glm::length(normal);
+      SurfaceVertex& out = surfaces[position_list_.size()];
+      out.normal = length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : mesh.normals[v];
+      out.uv = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[v];
+      out.color = mesh.colors.empty() ? white : glm::packUnorm4x8(mesh.colors[v]);
+      position_list_.push_back(glm::vec3(world_from_object * glm::dvec4(mesh.positions[v], 1.0)));
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.material < b.material; });
+  for (const Part& part : parts) {
+    const Instance& instance = scene_->instances[part.instance];
+    const Mesh& mesh = scene_->meshes[instance.mesh];
+    const Primitive& primitive = mesh.primitives[part.primitive];
+    if (primitive.index_count == 0) continue;
+    const Material& material = scene_->materials[part.material];
+    DrawRange range;
+    range.first_index = static_cast<std::uint32_t>(index_list_.size());
+    range.index_count = primitive.index_count;
+    range.material = part.material;
+    range.instance = part.instance;
+    range.casts_shadow = instance.casts_shadow;
+    range.double_sided = material.double_sided;
+    range.masked = material.alpha_mode == AlphaMode::mask;
+    range.low = glm::vec3(std::numeric_limits<float>::max());
+    range.high = -range.low;
+    const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
+    for (std::uint32_t i = 0; i < primitive.index_count; ++i) {
+      const std::uint32_t corner = i % 3;
+      const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
+      const std::uint32_t index = first_vertex[part.instance] + mesh.indices[primitive.first_index + turned];
+      index_list_.push_back(index);
+      range.low = glm::min(range.low, position_list_[index]);
+      range.high = glm::max(range.high, position_list_[index]);
+    }
+    ranges_.push_back(range);
+  }
+  if (ranges_.empty()) return;
+  low_ = ranges_.front().low;
+  high_ = ranges_.front().high;
+  for (const DrawRange& range : ranges_) {
+    low_ = glm::min(low_, range.low);
+    high_ = glm::max(high_, range.high);
+  }
+}
+
+void GpuScene::upload_materials(vulkan::Device& device) {
+  std::vector<shader::MaterialData> list;
+  for (const Material& material : scene_->materials) {
+    shader::MaterialData data{};
+    data.base_color = glm::vec4(material.base_color, material.alpha);
+    data.emissive = glm::vec4(material.emissive, 0.0f);
+    data.surface = {material.specular, std::clamp(material.shininess, 1.0f, 1024.0f),
+                    material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 0.0f,
+                    material.texture >= 0 ? 1.0f : 0.0f};
+    list.push_back(data);
+  }
+  materials_ = upload(device, ledger_, "materials", list.data(), list.size() * sizeof(list[0]),
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  for (const Texture& texture : scene_->textures) textures_.push_back(upload_texture(device, ledger_, texture));
+  textures_.push_back(upload_texture(device, ledger_, {"white", 1, 1, {255, 255, 255, 255}}));
+}
+
+const vulkan::Image& GpuScene::texture_of(std::uint32_t material) const {
+  const int texture = scene_->materials[material].texture;
+  return texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : textures_.back();
+}
+
+}  // namespace penumbra

@@ -1,0 +1,27 @@
+// Fragment stage of a technique's own picture of its inner state. The program is this file followed
+// by the technique's; the preamble names the function to call as DRAW_DIAGNOSTIC.
+#include "renderer/shaders/shadow_query.glsl"
+
+uniform sampler2D geometry_position;
+uniform usampler2D geometry_words;
+
+layout(location = 0) out vec4 out_color;
+
+vec4 DRAW_DIAGNOSTIC(ShadowQuery query, vec2 picture);
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(geometry_position, texel, 0);
+  Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
+  vec3 center = int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
+  Illumination incoming = illuminate(light, center, surface.position);
+  ShadowQuery query;
+  query.position = surface.position;
+  query.normal = surface.geometric_normal;
+  query.shading_normal = surface.shading_normal;
+  query.to_light = incoming.to_light;
+  query.light_distance = incoming.distance;
+  query.pixel = gl_FragCoord.xy;
+  query.point = position.w == 0.0 ? -1 : 0;  // -1: background
+  out_color = DRAW_DIAGNOSTIC(query, gl_FragCoord.xy / frame.size.xy);
+}

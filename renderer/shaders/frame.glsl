@@ -1,0 +1,20 @@
+// What every shader of a frame may read.
+#ifndef PENUMBRA_FRAME_GLSL
+#define PENUMBRA_FRAME_GLSL
+#include "renderer/shaders/shader_types.h"
+
+layout(std140) uniform FrameBlock { FrameData frame; };
+
+const float pi = 3.14159265358979;
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
+// IEC 61966-2-1.
+vec3 srgb_from_linear(vec3 c) {
+  return mix(1.055 * pow(max(c, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c,
+             lessThanEqual(c, vec3(0.0031308)));
+}
+vec3 linear_from_srgb(vec3 c) {
+  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
+}
+#endif

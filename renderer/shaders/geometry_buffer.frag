@@ -1,0 +1,51 @@
+#include "renderer/shaders/frame.glsl"
+#include "renderer/shaders/geometry_buffer.glsl"
+
+layout(location = 0) in vec3 world_position;
+layout(location = 1) in vec3 world_normal;
+layout(location = 2) in vec2 surface_uv;
+layout(location = 3) in vec4 vertex_color;
+
+layout(location = 0) out vec4 out_position;
+layout(location = 1) out uvec4 out_words;
+layout(location = 2) out vec4 out_radiance;
+
+layout(std430) readonly buffer MaterialBlock { MaterialData materials[]; };
+uniform sampler2D surface_texture;
+layout(std430) readonly buffer FacetBlock { uint facet_normals[]; };
+layout(push_constant) uniform DrawBlock { uint material; uint first_triangle; } draw;
+
+// Colours of textures and materials as the gamma mode decodes them.
+vec3 decoded(vec3 linear_color) {
+  if (frame.options.x == gamma_off || frame.options.x == gamma_output_only)
+    return srgb_from_linear(linear_color);
+  if (frame.options.x == gamma_input_twice) return linear_from_srgb(linear_color);
+  return linear_color;
+}
+
+void main() {
+  MaterialData material = materials[draw.material];
+  vec4 color = material.base_color * vertex_color;
+  if (material.surface.w > 0.5) color *= texture(surface_texture, surface_uv);
+  if (color.a < material.surface.z) discard;
+
+  // Both normals look towards the viewer. The facet's is exact, not a difference of pixels.
+  vec3 facet = unpack_unit_vector(facet_normals[draw.first_triangle + gl_PrimitiveID]);
+  vec3 to_camera = frame.camera_position.w > 0.5 ? frame.camera_position.xyz - world_position
+                                                 : -frame.camera_direction.xyz;
+  if (dot(facet, to_camera) < 0.0) facet = -facet;
+  vec3 normal = normalize(world_normal);
+  if (!gl_FrontFacing) normal = -normal;
+  if (dot(normal, facet) < 0.0) normal = facet;
+
+  Surface surface;
+  surface.position = world_position;
+  surface.shading_normal = normal;
+  surface.geometric_normal = facet;
+  surface.base_color = decoded(color.rgb);
+  surface.specular = material.surface.x;
+  surface.shininess = material.surface.y;
+  out_position = vec4(world_position, 1.0);
+  out_words = pack_surface(surface);
+  out_radiance = vec4(frame.ambient.rgb * surface.base_color + material.emissive.rgb, 1.0);
+}

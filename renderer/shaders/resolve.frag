@@ -1,0 +1,28 @@
+// Averages the samples of a pixel in linear light and encodes once.
+#include "renderer/shaders/frame.glsl"
+
+uniform sampler2D radiance;
+layout(std430) buffer FaultBlock { uint non_finite_pixels; };
+
+layout(location = 0) out vec4 out_encoded;
+#ifdef WITH_LINEAR
+layout(location = 1) out vec4 out_linear;
+#endif
+
+void main() {
+  int side = int(frame.size.z);
+  ivec2 first = ivec2(gl_FragCoord.xy) * side;
+  vec3 sum = vec3(0.0);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) sum += texelFetch(radiance, first + ivec2(x, y), 0).rgb;
+  vec3 color = frame.size.w * sum / float(side * side);
+#ifdef WITH_LINEAR
+  out_linear = vec4(color, 1.0);
+#endif
+  bool finite = !any(isnan(color)) && !any(isinf(color));
+  if (!finite) atomicAdd(non_finite_pixels, 1u);
+  bool encode = frame.options.x != gamma_off && frame.options.x != gamma_input_only;
+  color = clamp(color, 0.0, 1.0);
+  // A value that is no number is shown as magenta, which no scene contains.
+  out_encoded = vec4(finite ? (encode ? srgb_from_linear(color) : color) : vec3(1.0, 0.0, 1.0), 1.0);
+}

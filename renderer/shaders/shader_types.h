@@ -1,0 +1,63 @@
+// Structures and constants that C++ and GLSL share: this is their only definition. Members are vec4,
+// uvec4 and mat4 only, so that std140, std430 and C++ agree on the layout.
+#ifdef __cplusplus
+#pragma once
+#include <glm/glm.hpp>
+namespace penumbra::shader {
+using glm::mat4;
+using glm::uvec4;
+using glm::vec4;
+#define PENUMBRA_CONSTANT inline constexpr
+#else
+#define PENUMBRA_CONSTANT const
+#endif
+
+// Light points handled by one batch: one bit each in a mask.
+PENUMBRA_CONSTANT int points_per_batch = 32;
+// Most samples of a pixel.
+PENUMBRA_CONSTANT int max_supersampling = 16;
+
+PENUMBRA_CONSTANT int light_kind_spot = 0;
+PENUMBRA_CONSTANT int light_kind_directional = 1;
+PENUMBRA_CONSTANT int light_kind_point = 2;
+
+PENUMBRA_CONSTANT int gamma_correct = 0;
+PENUMBRA_CONSTANT int gamma_off = 1;
+PENUMBRA_CONSTANT int gamma_input_only = 2;
+PENUMBRA_CONSTANT int gamma_output_only = 3;
+PENUMBRA_CONSTANT int gamma_input_twice = 4;
+
+/// Constants of a frame. World space is the scene's, moved so that its middle is the origin: offsets
+/// of 1e7 m cost no precision.
+struct FrameData {
+  mat4 clip_from_world;   // reversed depth, infinite far plane
+  mat4 world_from_clip;
+  vec4 camera_position;   // xyz world; w 1 for perspective, 0 for orthographic
+  vec4 camera_direction;  // xyz unit, into the scene; w near plane, m
+  vec4 ambient;           // rgb linear
+  vec4 background_low;    // rgb linear, horizon
+  vec4 background_high;   // rgb linear, zenith
+  vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
+  uvec4 options;          // x gamma mode, y frame index, z seed
+};
+
+struct LightData {
+  vec4 position;   // xyz world, w kind
+  vec4 direction;  // xyz from the light into the scene, w range in m (0 unlimited)
+  vec4 color;      // rgb colour times intensity, w 1 for inverse-square attenuation
+  vec4 cone;       // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight
+  vec4 extent;     // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half height
+  vec4 right;      // xyz unit, along a rectangle's width
+  vec4 up;         // xyz unit, along its height
+};
+
+struct MaterialData {
+  vec4 base_color;  // rgb linear, a alpha
+  vec4 emissive;    // rgb linear
+  vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::shader
+#endif
+#undef PENUMBRA_CONSTANT

@@ -1,0 +1,180 @@
+#include "renderer/vulkan/memory.h"
+
+#include <algorithm>
+
+#include "renderer/error.h"
+#include "renderer/vulkan/commands.h"
+
+namespace penumbra::vulkan {
+namespace {
+
+Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs, MemoryKind kind,
+                               const std::string& name) {
+  VkMemoryPropertyFlags wanted = 0;
+  VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  if (kind != MemoryKind::device) {
+    wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    preferred = kind == MemoryKind::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0;
+  }
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  info.allocationSize = needs.size;
+  info.memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wanted, preferred);
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  const VkResult result = vkAllocateMemory(device.handle, &info, nullptr, &memory);
+  if (result != VK_SUCCESS)
+    throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) + " bytes");
+  return {device.handle, memory};
+}
+
+VkImageAspectFlags aspects_of(VkFormat format) {
+  VkImageAspectFlags aspects = 0;
+  if (has_depth(format)) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
+  if (has_stencil(format)) aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
+  return aspects != 0 ? aspects : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT};
+}
+
+Owned<VkImageView> make_view(Device& device, VkImage image, VkFormat format, VkImageViewType type,
+                             VkImageSubresourceRange range) {
+  VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  info.image = image;
+  info.viewType = type;
+  info.format = format;
+  info.subresourceRange = range;
+  VkImageView view = VK_NULL_HANDLE;
+  check(vkCreateImageView(device.handle, &info, nullptr, &view), "vkCreateImageView");
+  return {device.handle, view};
+}
+
+}  // namespace
+
+void MemoryLedger::add(const std::string& name, std::uint64_t bytes) {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.name == name; });
+  if (found != entries.end())
+    found->bytes += bytes;
+  else
+    entries.push_back({name, bytes});
+}
+
+bool has_stencil(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
+}
+
+bool has_depth(VkFormat format) {
+  return has_stencil(format) || format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+}
+
+Buffer::Buffer(Device& device, MemoryLedger& ledger, const std::string& name, VkDeviceSize bytes,
+               VkBufferUsageFlags usage, MemoryKind kind)
+    : size_(bytes) {
+  const auto& limits = device.properties.limits;
+  if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && bytes > limits.maxStorageBufferRange)
+    throw device_error(name + " of " + std::to_string(bytes) + " bytes exceeds the device's limit of " +
+                       std::to_string(limits.maxStorageBufferRange) + " for a storage buffer");
+  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  info.size = bytes;
+  info.usage = usage;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  check(vkCreateBuffer(device.handle, &info, nullptr, &buffer), "vkCreateBuffer");
+  buffer_ = {device.handle, buffer};
+  VkMemoryRequirements needs{};
+  vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
+  memory_ = allocate(device, needs, kind, name);
+  check(vkBindBufferMemory(device.handle, buffer, memory_, 0), "vkBindBufferMemory");
+  if (kind != MemoryKind::device)
+    check(vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+  ledger.add(name, bytes);
+}
+
+Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
+             const ImageDescription& description)
+    : description_(description), aspects_(aspects_of(description.format)) {
+  const auto& limits = device.properties.limits;
+  if (std::max(description.width, description.height) > limits.maxImageDimension2D)
+    throw device_error(name + " of " + std::to_string(description.width) + "x" +
+                       std::to_string(description.height) + " exceeds the device's limit of " +
+                       std::to_string(limits.maxImageDimension2D));
+  if (description.layers > limits.maxImageArrayLayers)
+    throw device_error(name + " has more layers than the device's limit of " +
+                       std::to_string(limits.maxImageArrayLayers));
+
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = description.format;
+  info.extent = {description.width, description.height, 1};
+  info.mipLevels = description.levels;
+  info.arrayLayers = description.layers;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = description.usage;
+  info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkImageFormatProperties format_limits{};
+  if (vkGetPhysicalDeviceImageFormatProperties(device.physical, info.format, info.imageType, info.tiling,
+                                               info.usage, 0, &format_limits) != VK_SUCCESS)
+    throw device_error("the device has no image format for " + name);
+  // A sum over all levels below 4/3 of the base; the driver's own answer overflows for huge images.
+  const double bytes = 16.0 * 4.0 / 3.0 * description.width * description.height * description.layers;
+  if (bytes > 64e9) throw device_error(name + " is too large");
+
+  VkImage image = VK_NULL_HANDLE;
+  check(vkCreateImage(device.handle, &info, nullptr, &image), "vkCreateImage");
+  image_ = {device.handle, image};
+  VkMemoryRequirements needs{};
+  vkGetImageMemoryRequirements(device.handle, image, &needs);
+  memory_ = allocate(device, needs, MemoryKind::device, name);
+  check(vkBindImageMemory(device.handle, image, memory_, 0), "vkBindImageMemory");
+  ledger.add(name, needs.size);
+
+  const bool depth = has_depth(description.format);
+  const VkImageAspectFlags view_aspect =
+      depth ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : aspects_;
+  const VkImageViewType type = description.layers > 1 || description.array_view
+                                   ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                   : VK_IMAGE_VIEW_TYPE_2D;
+  constexpr VkImageUsageFlags viewed =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if ((description.usage & viewed) != 0) {
+    const VkImageSubresourceRange all{view_aspect, 0, description.levels, 0, description.layers};
+    view_ = make_view(device, image_, description.format, type, all);
+    if (has_stencil(description.format)) {
+      const VkImageSubresourceRange stencil{VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, description.layers};
+      stencil_view_ = make_view(device, image_, description.format, type, stencil);
+    }
+    for (std::uint32_t level = 0; level < description.levels; ++level)
+      for (std::uint32_t layer = 0; layer < description.layers; ++layer)
+        slices_.push_back(make_view(device, image_, description.format, VK_IMAGE_VIEW_TYPE_2D,
+                                    {aspects_, level, 1, layer, 1}));
+  }
+  run_now(device, [&](VkCommandBuffer commands) {
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image_;
+    barrier.subresourceRange = {aspects_, 0, description.levels, 0, description.layers};
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+  });
+}
+
+ConstantArena::ConstantArena(Device& device, MemoryLedger& ledger, VkDeviceSize bytes)
+    : buffer_(device, ledger, "constants", bytes,
+              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+              MemoryKind::upload),
+      alignment_(std::max({VkDeviceSize{64}, device.properties.limits.minUniformBufferOffsetAlignment,
+                           device.properties.limits.minStorageBufferOffsetAlignment})) {}
+
+BufferRange ConstantArena::push(const void* data, VkDeviceSize bytes) {
+  const VkDeviceSize offset = (used_ + alignment_ - 1) / alignment_ * alignment_;
+  if (offset + bytes > buffer_.size()) throw device_error("a frame uses too many constants");
+  std::memcpy(static_cast<char*>(buffer_.mapped()) + offset, data, bytes);
+  used_ = offset + bytes;
+  return buffer_.range(offset, bytes);
+}
+
+}  // namespace penumbra::vulkan

@@ -1,0 +1,174 @@
+#include "renderer/vulkan/shader_compiler.h"
+
+#include <glslang/MachineIndependent/iomapper.h>
+#include <glslang/MachineIndependent/localintermediate.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+namespace penumbra::vulkan {
+namespace {
+
+EShLanguage language_of(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT: return EShLangVertex;
+    case VK_SHADER_STAGE_GEOMETRY_BIT: return EShLangGeometry;
+    case VK_SHADER_STAGE_FRAGMENT_BIT: return EShLangFragment;
+    default: return EShLangCompute;
+  }
+}
+
+VkShaderStageFlagBits stage_of(EShLanguage language) {
+  switch (language) {
+    case EShLangVertex: return VK_SHADER_STAGE_VERTEX_BIT;
+    case EShLangGeometry: return VK_SHADER_STAGE_GEOMETRY_BIT;
+    case EShLangFragment: return VK_SHADER_STAGE_FRAGMENT_BIT;
+    default: return VK_SHADER_STAGE_COMPUTE_BIT;
+  }
+}
+
+VkDescriptorType descriptor_type(const glslang::TType& type) {
+  if (type.getBasicType() == glslang::EbtSampler) {
+    const glslang::TSampler& sampler = type.getSampler();
+    if (sampler.isBuffer())
+      return sampler.isImage() ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
+                               : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    return sampler.isImage() ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                             : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  }
+  return type.getQualifier().storage == glslang::EvqBuffer ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                                           : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+}
+
+/// Assigns one binding per name over all stages and notes what it saw.
+class NameResolver : public glslang::TIoMapResolver {
+ public:
+  explicit NameResolver(CompiledProgram& program) : program_(program) {}
+
+  int resolveBinding(EShLanguage language, glslang::TVarEntryInfo& entry) override {
+    const glslang::TType& type = entry.symbol->getType();
+    if (type.getQualifier().isPushConstant()) {
+      program_.push_constants = true;
+      return -1;
+    }
+    if (type.getBasicType() != glslang::EbtSampler && type.getBasicType() != glslang::EbtBlock) return -1;
+    const std::string name = entry.symbol->getAccessName().c_str();
+    const auto next = static_cast<std::uint32_t>(numbers_.size());
+    const std::uint32_t binding = numbers_.emplace(name, next).first->second;
+    if (binding == next) program_.declared.push_back(name);
+    if (entry.live) note(name, binding, type, stage_of(language));
+    return static_cast<int>(binding);
+  }
+  bool validateBinding(EShLanguage, glslang::TVarEntryInfo&) override { return true; }
+  int resolveSet(EShLanguage, glslang::TVarEntryInfo&) override { return 0; }
+  int resolveUniformLocation(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
+  bool validateInOut(EShLanguage, glslang::TVarEntryInfo&) override { return true; }
+  int resolveInOutLocation(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
+  int resolveInOutComponent(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
+  int resolveInOutIndex(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
+  void notifyBinding(EShLanguage, glslang::TVarEntryInfo&) override {}
+  void notifyInOut(EShLanguage, glslang::TVarEntryInfo&) override {}
+  void beginNotifications(EShLanguage) override {}
+  void endNotifications(EShLanguage) override {}
+  void beginResolve(EShLanguage) override {}
+  void endResolve(EShLanguage) override {}
+  void beginCollect(EShLanguage) override {}
+  void endCollect(EShLanguage) override {}
+  void reserverResourceSlot(glslang::TVarEntryInfo&, TInfoSink&) override {}
+  void reserverStorageSlot(glslang::TVarEntryInfo&, TInfoSink&) override {}
+  void addStage(EShLanguage, glslang::TIntermediate&) override {}
+
+ private:
+  void note(const std::string& name, std::uint32_t binding, const glslang::TType& type,
+            VkShaderStageFlagBits stage) {
+    auto& list = program_.bindings;
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const auto& known) { return known.name == name; });
+    if (found != list.end()) {
+      found->stages |= stage;
+      return;
+    }
+    const auto count = type.isArray() ? static_cast<std::uint32_t>(type.getCumulativeArraySize()) : 1u;
+    list.push_back({name, binding, descriptor_type(type), count, static_cast<VkShaderStageFlags>(stage)});
+  }
+
+  CompiledProgram& program_;
+  std::map<std::string, std::uint32_t> numbers_;
+};
+
+class LibraryIncluder : public glslang::TShader::Includer {
+ public:
+  explicit LibraryIncluder(const ShaderLibrary& library) : library_(library) {}
+  IncludeResult* includeLocal(const char* name, const char*, std::size_t) override {
+    if (!library_.contains(name)) return nullptr;
+    const std::string& text = library_.text(name);
+    return new IncludeResult(name, text.data(), text.size(), nullptr);
+  }
+  void releaseInclude(IncludeResult* result) override { delete result; }
+
+ private:
+  const ShaderLibrary& library_;
+};
+
+/// glslang wants one process-wide start.
+void start_glslang() {
+  static const bool started = glslang::InitializeProcess();
+  if (!started) throw std::logic_error("glslang does not start");
+}
+
+}  // namespace
+
+void ShaderLibrary::add(std::span<const EmbeddedFile> files) {
+  for (const EmbeddedFile& file : files) texts_[std::string(file.path)] = std::string(file.text);
+}
+
+void ShaderLibrary::add(const std::string& path, const std::string& text) { texts_[path] = text; }
+
+const std::string& ShaderLibrary::text(const std::string& path) const {
+  const auto found = texts_.find(path);
+  if (found == texts_.end()) throw std::logic_error("no shader " + path);
+  return found->second;
+}
+
+CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& source) {
+  start_glslang();
+  constexpr auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  LibraryIncluder includer(library);
+  const std::string head = "#version 460\n#extension GL_GOOGLE_include_directive : require\n" +
+                           source.preamble + "\n#line 1\n";
+  std::vector<std::unique_ptr<glslang::TShader>> shaders;
+  glslang::TProgram program;
+  for (const auto& [stage, path] : source.stages) {
+    auto& shader = shaders.emplace_back(std::make_unique<glslang::TShader>(language_of(stage)));
+    const char* texts[] = {head.c_str(), library.text(path).c_str()};
+    const char* names[] = {"preamble", path.c_str()};
+    shader->setStringsWithLengthsAndNames(texts, nullptr, names, 2);
+    shader->setEnvInput(glslang::EShSourceGlsl, language_of(stage), glslang::EShClientVulkan, 130);
+    shader->setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+    shader->setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+    shader->setAutoMapBindings(true);
+    if (!shader->parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
+      throw std::logic_error("shader " + path + " does not compile:\n" + shader->getInfoLog());
+    program.addShader(shader.get());
+  }
+  CompiledProgram compiled;
+  NameResolver resolver(compiled);
+  if (!program.link(messages) || !program.mapIO(&resolver))
+    throw std::logic_error(std::string("shaders do not link:\n") + program.getInfoLog());
+  for (const auto& [stage, path] : source.stages) {
+    glslang::SpvOptions options;
+    options.disableOptimizer = true;
+    options.generateDebugInfo = false;
+    spv::SpvBuildLogger logger;
+    auto& words = compiled.spirv[stage];
+    glslang::GlslangToSpv(*program.getIntermediate(language_of(stage)), words, &logger, &options);
+    if (words.empty()) throw std::logic_error("shader " + path + ": " + logger.getAllMessages());
+  }
+  return compiled;
+}
+
+}  // namespace penumbra::vulkan
