@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "renderer/scene/scene.h"
+
+namespace penumbra::scenes {
+
+/// One entry of the table of built-in scenes; its maker is a pure function.
+struct BuiltIn {
+  const char* id;
+  const char* title;
+  const char* description;
+  Scene (*make)();
+};
+
+/// Survey scenes first, then those for other uses, then analytic ones.
+const std::vector<BuiltIn>& built_in_table();
+
+/// The six scenes of the survey (van Sambeek 2007, 4.1.2).
+Scene make_car();
+Scene make_boxes();
+Scene make_disco_box();
+Scene make_island();
+Scene make_warehouse_inside();
+Scene make_warehouse_outside();
+
+/// Scenes whose shadows are known in closed form, or that break particular techniques.
+Scene make_half_plane();
+Scene make_three_layers();
+Scene make_contact();
+Scene make_leaky_box();
+Scene make_camera_in_volume();
+
+/// `sweep:<objects>x<triangles>x<lights>` (van Sambeek 2007, 4.1.1). Throws bad_value (field
+/// "scene") naming the ranges.
+Scene make_sweep(const std::string& name);
+
+}  // namespace penumbra::scenes
