@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace penumbra::server::storage {
+
+/// The folder that one process owns: database, secrets, pictures and artefacts. The lock is the
+/// kernel's (flock), so that a killed process leaves none behind.
+class DataFolder {
+ public:
+  /// Creates the folder where it is missing (mode 0700). Throws Error `conflict` where another
+  /// process holds it.
+  explicit DataFolder(std::filesystem::path path);
+  ~DataFolder();
+  DataFolder(const DataFolder&) = delete;
+  DataFolder& operator=(const DataFolder&) = delete;
+
+  const std::filesystem::path& path() const { return root; }
+
+ private:
+  std::filesystem::path root;
+  int lock = -1;
+};
+
+/// Writes a file whole or not at all: temporary name, sync, rename, sync of the folder.
+void write_file_durably(const std::filesystem::path& file, const std::string& bytes,
+                        unsigned mode = 0600);
+
+/// Bytes of a file. Throws Error `storage`.
+std::string read_file(const std::filesystem::path& file);
+
+}  // namespace penumbra::server::storage

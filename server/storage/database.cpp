@@ -1,0 +1,166 @@
+#include "server/storage/database.h"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "renderer/error.h"
+
+namespace penumbra::server::storage {
+namespace {
+
+constexpr int busy_ms = 3000;             // a lock held longer than this is somebody else's trouble
+constexpr std::size_t largest_batch = 64;  // changes that share one commit
+
+int number_of(const EmbeddedFile& file) {
+  const auto name = file.path.substr(file.path.rfind('/') + 1);
+  int number = 0;
+  std::from_chars(name.data(), name.data() + name.size(), number);
+  return number;
+}
+
+/// Brings the tables to the newest version; a database of a newer program is refused.
+void migrate(SQLite::Database& connection) {
+  std::vector<EmbeddedFile> files(migrations().begin(), migrations().end());
+  std::sort(files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return a.path < b.path; });
+  const int present = connection.execAndGet("PRAGMA user_version").getInt();
+  const int newest = files.empty() ? 0 : number_of(files.back());
+  if (present > newest)
+    throw Error("storage", "the data folder was written by a newer version of the program", "data");
+  for (const auto& file : files) {
+    if (number_of(file) <= present) continue;
+    SQLite::Transaction transaction(connection, SQLite::TransactionBehavior::IMMEDIATE);
+    connection.exec(std::string(file.text));
+    connection.exec("PRAGMA user_version = " + std::to_string(number_of(file)));
+    transaction.commit();
+  }
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file) : path(file) {
+  // A damaged file is kept for repair: the server starts, says so, and writes nothing.
+  try {
+    guarded([&] { open_writer(); });
+  } catch (const Error&) {
+    if (healthy()) throw;
+  }
+  if (healthy()) thread = std::thread([this] { run_writer(); });
+}
+
+void Database::open_writer() {
+  writer = std::make_unique<SQLite::Database>(
+      path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_ms);
+  std::filesystem::permissions(
+      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  writer->exec("PRAGMA journal_mode = WAL");
+  writer->exec("PRAGMA synchronous = FULL");
+  writer->exec("PRAGMA foreign_keys = ON");
+  writer->exec("PRAGMA secure_delete = ON");  // who withdraws leaves no bytes behind
+  if (writer->execAndGet("PRAGMA quick_check").getString() != "ok") {
+    damaged = true;
+    throw Error("storage", "the database is damaged: restore a backup", "data");
+  }
+  migrate(*writer);
+}
+
+Database::~Database() {
+  {
+    std::lock_guard lock(queue_mutex);
+    stopping = true;
+  }
+  queue_changed.notify_all();
+  if (thread.joinable()) thread.join();
+}
+
+void Database::translate(const SQLite::Exception& error) {
+  switch (error.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw Error("busy", "the database is locked");
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      damaged = true;
+      throw Error("storage", "the database is damaged");
+    case SQLITE_FULL:
+      throw Error("storage", "the disk is full");
+    default:
+      throw Error("storage", std::string("database: ") + error.what());
+  }
+}
+
+void Database::perform(const Change& change) {
+  if (!healthy()) throw Error("storage", "the database is damaged: nothing is written");
+  Pending pending{&change, nullptr};
+  std::unique_lock lock(queue_mutex);
+  if (stopping) throw Error("draining", "the server is stopping");
+  queue.push_back(&pending);
+  queue_changed.notify_one();
+  batch_over.wait(lock, [&] { return pending.over; });
+  lock.unlock();
+  if (pending.failure) guarded([&] { std::rethrow_exception(pending.failure); });
+}
+
+void Database::run_writer() {
+  std::unique_lock lock(queue_mutex);
+  while (true) {
+    queue_changed.wait(lock, [&] { return stopping || !queue.empty(); });
+    if (queue.empty()) return;  // stopping, and everything accepted is written
+    std::vector<Pending*> batch;
+    while (!queue.empty() && batch.size() < largest_batch) {
+      batch.push_back(queue.front());
+      queue.pop_front();
+    }
+    lock.unlock();
+    run_batch(batch);
+    lock.lock();
+    for (auto* pending : batch) pending->over = true;
+    batch_over.notify_all();
+  }
+}
+
+void Database::run_batch(const std::vector<Pending*>& batch) {
+  try {
+    SQLite::Transaction transaction(*writer, SQLite::TransactionBehavior::IMMEDIATE);
+    for (auto* pending : batch) {
+      try {
+        SQLite::Savepoint savepoint(*writer, "change");
+        (*pending->change)(*writer);
+        savepoint.release();
+      } catch (...) {
+        // SQLite gives the whole transaction up on a full disk: nobody's change stands then.
+        if (sqlite3_get_autocommit(writer->getHandle()) != 0) throw;
+        pending->failure = std::current_exception();
+      }
+    }
+    transaction.commit();
+  } catch (...) {
+    for (auto* pending : batch)
+      if (!pending->failure) pending->failure = std::current_exception();
+  }
+}
+
+Database::Lease::Lease(Database& owner_) : owner(owner_) {
+  {
+    std::lock_guard lock(owner.readers_mutex);
+    if (!owner.readers.empty()) {
+      connection = std::move(owner.readers.back());
+      owner.readers.pop_back();
+    }
+  }
+  if (!connection)
+    owner.guarded([&] {
+      connection = std::make_unique<SQLite::Database>(owner.path.string(), SQLite::OPEN_READONLY,
+                                                      busy_ms);
+    });
+}
+
+Database::Lease::~Lease() {
+  constexpr std::size_t kept = 16;
+  std::lock_guard lock(owner.readers_mutex);
+  if (owner.readers.size() < kept) owner.readers.push_back(std::move(connection));
+}
+
+}  // namespace penumbra::server::storage

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "renderer/embedded_file.h"
+
+namespace penumbra::server::storage {
+
+/// The database of a data folder: one writing connection on one thread, and connections for reading.
+///
+/// Writes that wait at the same time share one transaction, each in its own savepoint, so that many
+/// people who answer at once pay for one sync of the disk and not for hundreds. `write` returns after
+/// the commit: what it returned from is durable (WAL, synchronous=FULL).
+///
+/// Failures become penumbra::Error: `busy` (locked too long), `storage` (disk full, input/output,
+/// damage). After damage was seen, `healthy` is false and every write is refused.
+class Database {
+ public:
+  explicit Database(const std::filesystem::path& file);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  /// Runs `work(SQLite::Database&)` in a transaction and answers what it returns; rolls its changes
+  /// back where it throws.
+  template <class Work>
+  auto write(Work work) {
+    using Result = decltype(work(std::declval<SQLite::Database&>()));
+    if constexpr (std::is_void_v<Result>) {
+      perform([&](SQLite::Database& connection) { work(connection); });
+    } else {
+      std::optional<Result> result;
+      perform([&](SQLite::Database& connection) { result.emplace(work(connection)); });
+      return std::move(*result);
+    }
+  }
+
+  /// Runs `work(SQLite::Database&)` on a read-only connection, in a snapshot.
+  template <class Work>
+  auto read(Work work) {
+    Lease lease(*this);
+    return guarded([&] {
+      SQLite::Transaction snapshot(*lease.connection);
+      return work(*lease.connection);
+    });
+  }
+
+  bool healthy() const { return !damaged.load(); }
+
+ private:
+  using Change = std::function<void(SQLite::Database&)>;
+  struct Pending {
+    const Change* change;
+    std::exception_ptr failure;
+    bool over = false;
+  };
+  /// Takes a reading connection and puts it back.
+  struct Lease {
+    explicit Lease(Database& owner);
+    ~Lease();
+    Database& owner;
+    std::unique_ptr<SQLite::Database> connection;
+  };
+
+  void open_writer();
+  void perform(const Change& change);
+  void run_writer();
+  void run_batch(const std::vector<Pending*>& batch);
+  [[noreturn]] void translate(const SQLite::Exception& error);
+
+  template <class Work>
+  auto guarded(Work work) {
+    try {
+      return work();
+    } catch (const SQLite::Exception& error) {
+      translate(error);
+    }
+  }
+
+  std::filesystem::path path;
+  std::atomic<bool> damaged{false};
+  std::unique_ptr<SQLite::Database> writer;  ///< used by the writer's thread only
+  std::mutex queue_mutex;
+  std::condition_variable queue_changed;
+  std::condition_variable batch_over;
+  std::deque<Pending*> queue;
+  bool stopping = false;
+  std::mutex readers_mutex;
+  std::vector<std::unique_ptr<SQLite::Database>> readers;  ///< idle ones
+  std::thread thread;
+};
+
+/// Numbered SQL files of schema/migrations, compiled in.
+std::span<const EmbeddedFile> migrations();
+
+}  // namespace penumbra::server::storage

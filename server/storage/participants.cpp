@@ -1,0 +1,367 @@
+#include "server/storage/participants.h"
+
+#include "renderer/error.h"
+#include "server/jobs/digest.h"
+
+namespace penumbra::server::storage {
+namespace {
+
+using study::PlaceState;
+
+constexpr const char* columns =
+    "id, pseudonym, study, version, place, test, token, withdrawal_code, enrolment_id, language, "
+    "consent_version, parameters, details, entered_at, completed_at";
+
+ParticipantRecord record_of(SQLite::Statement& row) {
+  ParticipantRecord record;
+  record.key = row.getColumn(0).getInt64();
+  record.pseudonym = row.getColumn(1).getString();
+  record.study = row.getColumn(2).getString();
+  record.version = row.getColumn(3).getInt();
+  record.place = static_cast<std::size_t>(row.getColumn(4).getInt64());
+  record.test = row.getColumn(5).getInt() != 0;
+  record.token = row.getColumn(6).getString();
+  record.withdrawal_code = row.getColumn(7).getString();
+  record.enrolment_id = row.getColumn(8).getString();
+  record.language = row.getColumn(9).getString();
+  record.consent_version = row.getColumn(10).getString();
+  record.parameters = nlohmann::json::parse(row.getColumn(11).getString());
+  record.details = nlohmann::json::parse(row.getColumn(12).getString());
+  record.entered_at = row.getColumn(13).getString();
+  if (!row.getColumn(14).isNull()) record.completed_at = row.getColumn(14).getString();
+  return record;
+}
+
+std::optional<ParticipantRecord> find_where(SQLite::Database& connection,
+                                            const std::string& condition, const std::string& a,
+                                            const std::string& b = {}) {
+  SQLite::Statement query(
+      connection, std::string("SELECT ") + columns + " FROM participants WHERE " + condition);
+  query.bind(1, a);
+  if (!b.empty()) query.bind(2, b);
+  if (!query.executeStep()) return std::nullopt;
+  return record_of(query);
+}
+
+/// States of all places of a version; places of people who withdrew stay dropped.
+std::vector<PlaceState> place_states(SQLite::Database& connection, const ParticipantRecord& fresh,
+                                     const std::string& abandoned_before) {
+  SQLite::Statement query(connection,
+                          "SELECT place, completed_at IS NOT NULL, seen_at >= ? FROM participants "
+                          "WHERE study = ? AND version = ? AND test = 0 AND holds_place = 1");
+  query.bind(1, abandoned_before);
+  query.bind(2, fresh.study);
+  query.bind(3, fresh.version);
+  std::vector<PlaceState> places;
+  while (query.executeStep()) {
+    const auto place = static_cast<std::size_t>(query.getColumn(0).getInt64());
+    if (places.size() <= place) places.resize(place + 1, PlaceState::dropped);
+    if (query.getColumn(1).getInt() != 0)
+      places[place] = PlaceState::completed;
+    else if (query.getColumn(2).getInt() != 0)
+      places[place] = PlaceState::open;
+  }
+  return places;
+}
+
+void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fresh,
+                     std::uint32_t quota) {
+  SQLite::Statement status(connection, "SELECT status FROM studies WHERE study = ? AND version = ?");
+  status.bind(1, fresh.study);
+  status.bind(2, fresh.version);
+  if (!status.executeStep() || status.getColumn(0).getString() != "open")
+    throw Error("conflict", "the study is not open", "study");
+  if (quota == 0 || fresh.test) return;
+  SQLite::Statement completed(connection,
+                              "SELECT COUNT(*) FROM participants WHERE study = ? AND version = ? "
+                              "AND test = 0 AND completed_at IS NOT NULL");
+  completed.bind(1, fresh.study);
+  completed.bind(2, fresh.version);
+  completed.executeStep();
+  if (completed.getColumn(0).getInt64() >= quota)
+    throw Error("conflict", "the study has as many participants as it needs", "study");
+}
+
+/// Place of the new person, taken away from whoever left it.
+std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fresh,
+                       const std::string& abandoned_before) {
+  if (fresh.test) {
+    SQLite::Statement tests(connection,
+                            "SELECT COUNT(*) FROM participants WHERE study = ? AND version = ? "
+                            "AND test = 1");
+    tests.bind(1, fresh.study);
+    tests.bind(2, fresh.version);
+    tests.executeStep();
+    return static_cast<std::size_t>(tests.getColumn(0).getInt64());
+  }
+  const auto states = place_states(connection, fresh, abandoned_before);
+  const auto place = study::next_place(states);
+  SQLite::Statement release(connection,
+                            "UPDATE participants SET holds_place = 0 WHERE study = ? AND "
+                            "version = ? AND place = ? AND test = 0");
+  release.bind(1, fresh.study);
+  release.bind(2, fresh.version);
+  release.bind(3, static_cast<std::int64_t>(place));
+  release.exec();
+  return place;
+}
+
+std::vector<AnswerRecord> current_answers(SQLite::Database& connection, std::int64_t participant) {
+  SQLite::Statement query(connection,
+                          "SELECT page, answer_id, body, answered_at FROM answers "
+                          "WHERE participant = ? AND is_current = 1 ORDER BY page");
+  query.bind(1, participant);
+  std::vector<AnswerRecord> found;
+  while (query.executeStep())
+    found.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
+                     nlohmann::json::parse(query.getColumn(2).getString()),
+                     query.getColumn(3).getString()});
+  return found;
+}
+
+std::vector<Exclusion> exclusions_of(SQLite::Database& connection, std::int64_t participant) {
+  SQLite::Statement query(connection,
+                          "SELECT excluded, reason, decided_at FROM exclusions "
+                          "WHERE participant = ? ORDER BY id");
+  query.bind(1, participant);
+  std::vector<Exclusion> found;
+  while (query.executeStep())
+    found.push_back({query.getColumn(0).getInt() != 0, query.getColumn(1).getString(),
+                     query.getColumn(2).getString()});
+  return found;
+}
+
+/// Throws where the person may not answer any more.
+void check_answerable(SQLite::Database& connection, const ParticipantRecord& participant) {
+  SQLite::Statement query(connection,
+                          "SELECT p.completed_at IS NOT NULL, s.status FROM participants AS p "
+                          "JOIN studies AS s ON s.study = p.study AND s.version = p.version "
+                          "WHERE p.id = ?");
+  query.bind(1, participant.key);
+  if (!query.executeStep()) throw not_found("participant", "there is nothing at this address");
+  if (query.getColumn(0).getInt() != 0)
+    throw Error("conflict", "the study was completed already", "participant");
+  if (query.getColumn(1).getString() != "open")
+    throw Error("conflict", "the study is closed", "study");
+}
+
+/// Takes the mark from the page's current answer and answers its id, empty where there is none.
+std::string retire_current(SQLite::Database& connection, std::int64_t participant, int page) {
+  SQLite::Statement query(connection,
+                          "SELECT answer_id FROM answers WHERE participant = ? AND page = ? AND "
+                          "is_current = 1");
+  query.bind(1, participant);
+  query.bind(2, page);
+  const std::string replaced = query.executeStep() ? query.getColumn(0).getString() : "";
+  SQLite::Statement retire(connection,
+                           "UPDATE answers SET is_current = 0 WHERE participant = ? AND page = ?");
+  retire.bind(1, participant);
+  retire.bind(2, page);
+  retire.exec();
+  return replaced;
+}
+
+int pages_answered(SQLite::Database& connection, std::int64_t participant) {
+  SQLite::Statement query(connection,
+                          "SELECT COUNT(*) FROM answers WHERE participant = ? AND is_current = 1");
+  query.bind(1, participant);
+  query.executeStep();
+  return query.getColumn(0).getInt();
+}
+
+}  // namespace
+
+ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint32_t quota,
+                                      const std::string& abandoned_before) {
+  return database.write([&](SQLite::Database& connection) {
+    if (const auto known = find_where(connection, "study = ? AND enrolment_id = ?", fresh.study,
+                                      fresh.enrolment_id))
+      return *known;
+    check_enrolment(connection, fresh, quota);
+    ParticipantRecord record = fresh;
+    record.place = take_place(connection, fresh, abandoned_before);
+    SQLite::Statement insert(
+        connection,
+        "INSERT INTO participants (pseudonym, study, version, place, holds_place, test, token, "
+        "token_hash, withdrawal_code, enrolment_id, language, consent_version, parameters, "
+        "details, entered_at, seen_at) VALUES (?, ?, ?, ?, 1, ?, ?, ?, ?, ?, ?, ?, ?, '{}', ?, ?)");
+    int next = 1;
+    insert.bind(next++, record.pseudonym);
+    insert.bind(next++, record.study);
+    insert.bind(next++, record.version);
+    insert.bind(next++, static_cast<std::int64_t>(record.place));
+    insert.bind(next++, record.test ? 1 : 0);
+    insert.bind(next++, record.token);
+    insert.bind(next++, sha256(record.token));
+    insert.bind(next++, record.withdrawal_code);
+    insert.bind(next++, record.enrolment_id);
+    insert.bind(next++, record.language);
+    insert.bind(next++, record.consent_version);
+    insert.bind(next++, record.parameters.dump());
+    insert.bind(next++, record.entered_at);
+    insert.bind(next++, record.entered_at);
+    insert.exec();
+    record.key = connection.getLastInsertRowid();
+    return record;
+  });
+}
+
+std::optional<ParticipantRecord> Participants::find(const std::string& token) {
+  return database.read([&](SQLite::Database& connection) {
+    return find_where(connection, "token_hash = ?", sha256(token));
+  });
+}
+
+std::vector<AnswerRecord> Participants::answers(std::int64_t participant) {
+  return database.read(
+      [&](SQLite::Database& connection) { return current_answers(connection, participant); });
+}
+
+nlohmann::json Participants::answer(
+    const ParticipantRecord& participant, const AnswerRecord& fresh,
+    const std::function<bool(const nlohmann::json&)>& same,
+    const std::function<nlohmann::json(const std::string&, int)>& make_reply) {
+  return database.write([&](SQLite::Database& connection) {
+    SQLite::Statement known(
+        connection, "SELECT page, body, reply FROM answers WHERE participant = ? AND answer_id = ?");
+    known.bind(1, participant.key);
+    known.bind(2, fresh.answer_id);
+    if (known.executeStep()) {
+      const bool repeated = known.getColumn(0).getInt() == fresh.page &&
+                            same(nlohmann::json::parse(known.getColumn(1).getString()));
+      if (!repeated)
+        throw Error("conflict", "another answer was stored under this id", "answer_id");
+      return nlohmann::json::parse(known.getColumn(2).getString());
+    }
+    check_answerable(connection, participant);
+    const auto replaced = retire_current(connection, participant.key, fresh.page);
+    const auto reply =
+        make_reply(replaced, pages_answered(connection, participant.key) + 1);
+    SQLite::Statement insert(connection,
+                             "INSERT INTO answers (participant, page, answer_id, body, reply, "
+                             "answered_at, is_current) VALUES (?, ?, ?, ?, ?, ?, 1)");
+    insert.bind(1, participant.key);
+    insert.bind(2, fresh.page);
+    insert.bind(3, fresh.answer_id);
+    insert.bind(4, fresh.body.dump());
+    insert.bind(5, reply.dump());
+    insert.bind(6, fresh.answered_at);
+    insert.exec();
+    SQLite::Statement seen(connection, "UPDATE participants SET seen_at = ? WHERE id = ?");
+    seen.bind(1, fresh.answered_at);
+    seen.bind(2, participant.key);
+    seen.exec();
+    return reply;
+  });
+}
+
+void Participants::complete(const ParticipantRecord& participant, int pages,
+                            const nlohmann::json& details, const std::string& now) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement state(connection,
+                            "SELECT completed_at IS NOT NULL FROM participants WHERE id = ?");
+    state.bind(1, participant.key);
+    if (!state.executeStep()) throw not_found("participant", "there is nothing at this address");
+    if (state.getColumn(0).getInt() != 0) return;
+    const int answered = pages_answered(connection, participant.key);
+    if (answered < pages)
+      throw Error("conflict",
+                  std::to_string(pages - answered) + " of " + std::to_string(pages) +
+                      " pages have no answer yet",
+                  "pages");
+    SQLite::Statement update(
+        connection,
+        "UPDATE participants SET completed_at = ?, seen_at = ?, details = ? WHERE id = ?");
+    update.bind(1, now);
+    update.bind(2, now);
+    update.bind(3, details.dump());
+    update.bind(4, participant.key);
+    update.exec();
+  });
+}
+
+bool Participants::withdraw(const std::string& code, const std::string& now) {
+  return database.write([&](SQLite::Database& connection) {
+    const auto person = find_where(connection, "withdrawal_code = ?", code);
+    if (!person) return false;
+    SQLite::Statement remove(connection, "DELETE FROM participants WHERE id = ?");
+    remove.bind(1, person->key);
+    remove.exec();
+    if (person->test) return true;
+    SQLite::Statement note(
+        connection, "INSERT INTO withdrawals (study, version, withdrawn_at) VALUES (?, ?, ?)");
+    note.bind(1, person->study);
+    note.bind(2, person->version);
+    note.bind(3, now);
+    note.exec();
+    return true;
+  });
+}
+
+bool Participants::exclude(const std::string& study, const std::string& pseudonym,
+                           const Exclusion& decision) {
+  return database.write([&](SQLite::Database& connection) {
+    const auto person =
+        find_where(connection, "study = ? AND pseudonym = ?", study, pseudonym);
+    if (!person) return false;
+    SQLite::Statement insert(connection,
+                             "INSERT INTO exclusions (participant, excluded, reason, decided_at) "
+                             "VALUES (?, ?, ?, ?)");
+    insert.bind(1, person->key);
+    insert.bind(2, decision.excluded ? 1 : 0);
+    insert.bind(3, decision.reason);
+    insert.bind(4, decision.decided_at);
+    insert.exec();
+    return true;
+  });
+}
+
+void Participants::each(const std::string& study, int version,
+                        const std::function<void(const ParticipantData&)>& take) {
+  constexpr int portion = 200;
+  std::int64_t last = 0;
+  while (true) {
+    const auto people = database.read([&](SQLite::Database& connection) {
+      SQLite::Statement query(connection, std::string("SELECT ") + columns +
+                                              " FROM participants WHERE study = ? AND version = ? "
+                                              "AND id > ? ORDER BY id LIMIT ?");
+      query.bind(1, study);
+      query.bind(2, version);
+      query.bind(3, last);
+      query.bind(4, portion);
+      std::vector<ParticipantData> found;
+      while (query.executeStep()) found.push_back({record_of(query), {}, {}});
+      for (auto& person : found) {
+        person.answers = current_answers(connection, person.participant.key);
+        person.exclusions = exclusions_of(connection, person.participant.key);
+      }
+      return found;
+    });
+    for (const auto& person : people) take(person);
+    if (people.size() < portion) return;
+    last = people.back().participant.key;
+  }
+}
+
+std::vector<Participants::Progress> Participants::progress(const std::string& study, int version) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection,
+                            "SELECT p.id, p.place, a.page FROM participants AS p JOIN answers AS a "
+                            "ON a.participant = p.id WHERE p.study = ? AND p.version = ? AND "
+                            "p.test = 0 AND a.is_current = 1 ORDER BY p.id, a.page");
+    query.bind(1, study);
+    query.bind(2, version);
+    std::vector<Progress> found;
+    std::int64_t person = -1;
+    while (query.executeStep()) {
+      if (query.getColumn(0).getInt64() != person) {
+        person = query.getColumn(0).getInt64();
+        found.push_back({static_cast<std::size_t>(query.getColumn(1).getInt64()), {}});
+      }
+      found.back().pages.push_back(query.getColumn(2).getInt());
+    }
+    return found;
+  });
+}
+
+}  // namespace penumbra::server::storage

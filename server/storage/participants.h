@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/storage/database.h"
+#include "study/enrolment.h"
+
+namespace penumbra::server::storage {
+
+struct ParticipantRecord {
+  std::int64_t key = 0;
+  std::string pseudonym;  ///< the only name in exports
+  std::string study;
+  int version = 1;
+  std::size_t place = 0;  ///< in the balanced orders of the version
+  bool test = false;      ///< a researcher's preview, never counted
+  std::string token;
+  std::string withdrawal_code;
+  std::string enrolment_id;
+  std::string language;
+  std::string consent_version;
+  nlohmann::json parameters = nlohmann::json::object();  ///< of the link
+  nlohmann::json details = nlohmann::json::object();     ///< about the person, given at the end
+  std::string entered_at;
+  std::string completed_at;  ///< empty until completed
+};
+
+struct AnswerRecord {
+  int page = 0;
+  std::string answer_id;
+  nlohmann::json body;
+  std::string answered_at;
+};
+
+struct Exclusion {
+  bool excluded = false;
+  std::string reason;
+  std::string decided_at;
+};
+
+/// A participant with everything that exports need.
+struct ParticipantData {
+  ParticipantRecord participant;
+  std::vector<AnswerRecord> answers;   ///< current ones, by page
+  std::vector<Exclusion> exclusions;   ///< in order; the last one counts
+
+  bool excluded() const { return !exclusions.empty() && exclusions.back().excluded; }
+};
+
+/// People and their answers.
+class Participants {
+ public:
+  explicit Participants(Database& database_) : database(database_) {}
+
+  /// Enrols a person; `fresh` brings everything but key and place. The same enrolment_id in the
+  /// same study again answers the person stored first. The place is study::next_place; a place is
+  /// given away when its holder has not completed and was not seen since `abandoned_before`.
+  /// Throws `conflict` where the version is not open (tests may enter any version that is), or
+  /// `quota` people (0: no limit) have completed.
+  ParticipantRecord enrol(const ParticipantRecord& fresh, std::uint32_t quota,
+                          const std::string& abandoned_before);
+
+  std::optional<ParticipantRecord> find(const std::string& token);
+
+  /// Current answers, by page.
+  std::vector<AnswerRecord> answers(std::int64_t participant);
+
+  /// Stores an answer and answers the reply that is stored with it. The same answer_id again gets
+  /// the reply stored first if `same(stored body)` says that the content is equal, else `conflict`.
+  /// A new answer_id replaces the page's current answer, which stays as history. Throws `conflict`
+  /// after completion and where the study is closed. `make_reply` gets the answer_id of the answer
+  /// replaced (empty: none) and the number of pages answered now.
+  nlohmann::json answer(
+      const ParticipantRecord& participant, const AnswerRecord& fresh,
+      const std::function<bool(const nlohmann::json&)>& same,
+      const std::function<nlohmann::json(const std::string&, int)>& make_reply);
+
+  /// Marks as completed once all `pages` have an answer (else `conflict`), with details about the
+  /// person. Repeating changes nothing.
+  void complete(const ParticipantRecord& participant, int pages, const nlohmann::json& details,
+                const std::string& now);
+
+  /// Deletes the person who holds the code, with all answers; false where nobody does.
+  bool withdraw(const std::string& code, const std::string& now);
+
+  /// Records a decision. False where the study has no such person.
+  bool exclude(const std::string& study, const std::string& pseudonym, const Exclusion& decision);
+
+  /// Calls `take` for every participant of a version in order of entry, in portions, so that a long
+  /// export holds no snapshot for long and the write-ahead log stays bounded.
+  void each(const std::string& study, int version,
+            const std::function<void(const ParticipantData&)>& take);
+
+  /// Answers of completed and started people (no tests) per page position is of no use, since
+  /// positions differ; so per participant: place and positions answered.
+  struct Progress {
+    std::size_t place = 0;
+    std::vector<int> pages;
+  };
+  std::vector<Progress> progress(const std::string& study, int version);
+
+ private:
+  Database& database;
+};
+
+}  // namespace penumbra::server::storage

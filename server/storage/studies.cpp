@@ -1,0 +1,271 @@
+#include "server/storage/studies.h"
+
+#include "renderer/error.h"
+
+namespace penumbra::server::storage {
+namespace {
+
+constexpr const char* columns =
+    "study, version, status, document, hash, seed, pictures_done, pictures_total, error, created_at";
+
+std::string select(const std::string& condition) {
+  return std::string("SELECT ") + columns + " FROM studies " + condition;
+}
+
+StudyRecord record_of(SQLite::Statement& row) {
+  StudyRecord record;
+  record.id = row.getColumn(0).getString();
+  record.version = row.getColumn(1).getInt();
+  record.status = row.getColumn(2).getString();
+  record.document = nlohmann::json::parse(row.getColumn(3).getString());
+  record.hash = row.getColumn(4).isNull() ? "" : row.getColumn(4).getString();
+  record.seed = static_cast<std::uint64_t>(row.getColumn(5).getInt64());
+  record.pictures_done = row.getColumn(6).getInt();
+  record.pictures_total = row.getColumn(7).getInt();
+  if (!row.getColumn(8).isNull())
+    record.error = nlohmann::json::parse(row.getColumn(8).getString());
+  record.created_at = row.getColumn(9).getString();
+  return record;
+}
+
+std::optional<StudyRecord> first(SQLite::Statement& query) {
+  if (!query.executeStep()) return std::nullopt;
+  return record_of(query);
+}
+
+std::vector<StudyRecord> all(SQLite::Statement& query) {
+  std::vector<StudyRecord> records;
+  while (query.executeStep()) records.push_back(record_of(query));
+  return records;
+}
+
+/// Runs a statement that must change a row; otherwise the state was another than expected.
+void change_one(SQLite::Statement& statement, const std::string& otherwise) {
+  if (statement.exec() != 1) throw Error("conflict", otherwise, "status");
+}
+
+}  // namespace
+
+StudyRecord Studies::put_draft(const std::string& id, const nlohmann::json& document,
+                               std::uint64_t seed, const std::string& now) {
+  return database.write([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
+    query.bind(1, id);
+    const auto present = first(query);
+    if (present && present->status == "publishing")
+      throw Error("conflict", "study " + id + " is being published", "status");
+    StudyRecord record;
+    record.id = id;
+    record.status = "draft";
+    record.document = document;
+    record.seed = seed;
+    record.created_at = now;
+    if (present) record.version = present->version + (present->status == "draft" ? 0 : 1);
+    if (present && present->status == "draft") {
+      SQLite::Statement drop(connection, "DELETE FROM studies WHERE study = ? AND version = ?");
+      drop.bind(1, id);
+      drop.bind(2, record.version);
+      drop.exec();
+    }
+    SQLite::Statement insert(connection,
+                             "INSERT INTO studies (study, version, status, document, seed, "
+                             "created_at) VALUES (?, ?, 'draft', ?, ?, ?)");
+    insert.bind(1, id);
+    insert.bind(2, record.version);
+    insert.bind(3, document.dump());
+    insert.bind(4, static_cast<std::int64_t>(seed));
+    insert.bind(5, now);
+    insert.exec();
+    return record;
+  });
+}
+
+std::vector<StudyRecord> Studies::list() {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection,
+                            select("AS s WHERE version = (SELECT MAX(version) FROM studies AS o "
+                                   "WHERE o.study = s.study) ORDER BY study"));
+    return all(query);
+  });
+}
+
+std::optional<StudyRecord> Studies::latest(const std::string& id) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
+    query.bind(1, id);
+    return first(query);
+  });
+}
+
+std::optional<StudyRecord> Studies::find(const std::string& id, int version) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? AND version = ?"));
+    query.bind(1, id);
+    query.bind(2, version);
+    return first(query);
+  });
+}
+
+std::optional<StudyRecord> Studies::open_version(const std::string& id) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? AND status = 'open'"));
+    query.bind(1, id);
+    return first(query);
+  });
+}
+
+std::optional<StudyRecord> Studies::latest_published(const std::string& id) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? AND status IN ('open', 'closed') "
+                                               "ORDER BY version DESC LIMIT 1"));
+    query.bind(1, id);
+    return first(query);
+  });
+}
+
+std::vector<StudyRecord> Studies::being_published() {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE status = 'publishing' ORDER BY study"));
+    return all(query);
+  });
+}
+
+void Studies::start_publishing(const std::string& id, int version, const std::string& hash,
+                               int pictures) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement update(
+        connection,
+        "UPDATE studies SET status = 'publishing', hash = ?, pictures_done = 0, "
+        "pictures_total = ?, error = NULL WHERE study = ? AND version = ? AND status = 'draft'");
+    update.bind(1, hash);
+    update.bind(2, pictures);
+    update.bind(3, id);
+    update.bind(4, version);
+    change_one(update, "only a draft can be published");
+    SQLite::Statement drop(connection, "DELETE FROM pictures WHERE study = ? AND version = ?");
+    drop.bind(1, id);
+    drop.bind(2, version);
+    drop.exec();
+  });
+}
+
+void Studies::count_picture(const std::string& id, int version, const std::string& request,
+                            const FrozenPicture& picture) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement insert(connection,
+                             "INSERT INTO pictures (study, version, request, render, digest) "
+                             "VALUES (?, ?, ?, ?, ?) ON CONFLICT (study, version, request) "
+                             "DO UPDATE SET render = excluded.render, digest = excluded.digest");
+    insert.bind(1, id);
+    insert.bind(2, version);
+    insert.bind(3, request);
+    insert.bind(4, picture.render);
+    insert.bind(5, picture.digest);
+    insert.exec();
+    SQLite::Statement count(connection,
+                            "UPDATE studies SET pictures_done = (SELECT COUNT(*) FROM pictures "
+                            "WHERE study = ?1 AND version = ?2) WHERE study = ?1 AND version = ?2");
+    count.bind(1, id);
+    count.bind(2, version);
+    count.exec();
+  });
+}
+
+void Studies::open(const std::string& id, int version, const std::string& now) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement supersede(connection,
+                                "UPDATE studies SET status = 'closed', closed_at = ? "
+                                "WHERE study = ? AND status = 'open'");
+    supersede.bind(1, now);
+    supersede.bind(2, id);
+    supersede.exec();
+    SQLite::Statement update(connection,
+                             "UPDATE studies SET status = 'open', opened_at = ? "
+                             "WHERE study = ? AND version = ? AND status = 'publishing'");
+    update.bind(1, now);
+    update.bind(2, id);
+    update.bind(3, version);
+    change_one(update, "the study is not being published");
+  });
+}
+
+void Studies::fail_publishing(const std::string& id, int version, const nlohmann::json& error) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement update(connection,
+                             "UPDATE studies SET status = 'draft', hash = NULL, error = ? "
+                             "WHERE study = ? AND version = ? AND status = 'publishing'");
+    update.bind(1, error.dump());
+    update.bind(2, id);
+    update.bind(3, version);
+    update.exec();
+  });
+}
+
+void Studies::close(const std::string& id, const std::string& now) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement update(connection,
+                             "UPDATE studies SET status = 'closed', closed_at = ? "
+                             "WHERE study = ? AND status = 'open'");
+    update.bind(1, now);
+    update.bind(2, id);
+    change_one(update, "the study is not open");
+  });
+}
+
+std::map<std::string, FrozenPicture> Studies::pictures(const std::string& id, int version) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection,
+                            "SELECT request, render, digest FROM pictures "
+                            "WHERE study = ? AND version = ?");
+    query.bind(1, id);
+    query.bind(2, version);
+    std::map<std::string, FrozenPicture> found;
+    while (query.executeStep())
+      found[query.getColumn(0).getString()] = {query.getColumn(1).getString(),
+                                               query.getColumn(2).getString()};
+    return found;
+  });
+}
+
+std::optional<FrozenPicture> Studies::picture(const std::string& id, int version,
+                                              const std::string& request) {
+  return database.read([&](SQLite::Database& connection) -> std::optional<FrozenPicture> {
+    SQLite::Statement query(connection,
+                            "SELECT render, digest FROM pictures "
+                            "WHERE study = ? AND version = ? AND request = ?");
+    query.bind(1, id);
+    query.bind(2, version);
+    query.bind(3, request);
+    if (!query.executeStep()) return std::nullopt;
+    return FrozenPicture{query.getColumn(0).getString(), query.getColumn(1).getString()};
+  });
+}
+
+StudyCounts Studies::counts(const std::string& id, int version) {
+  return database.read([&](SQLite::Database& connection) {
+    StudyCounts counts;
+    SQLite::Statement people(connection,
+                             "SELECT test, completed_at IS NOT NULL, COUNT(*) FROM participants "
+                             "WHERE study = ? AND version = ? GROUP BY 1, 2");
+    people.bind(1, id);
+    people.bind(2, version);
+    while (people.executeStep()) {
+      const int number = people.getColumn(2).getInt();
+      if (people.getColumn(0).getInt() != 0) {
+        counts.tests += number;
+        continue;
+      }
+      counts.entered += number;
+      if (people.getColumn(1).getInt() != 0) counts.completed += number;
+    }
+    SQLite::Statement gone(connection,
+                           "SELECT COUNT(*) FROM withdrawals WHERE study = ? AND version = ?");
+    gone.bind(1, id);
+    gone.bind(2, version);
+    gone.executeStep();
+    counts.withdrawn = gone.getColumn(0).getInt();
+    return counts;
+  });
+}
+
+}  // namespace penumbra::server::storage
