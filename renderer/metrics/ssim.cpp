@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "renderer/metrics/check.h"
+#include "renderer/metrics/metrics.h"
+#include "renderer/metrics/rows.h"
+
+namespace penumbra::metrics {
+namespace {
+
+constexpr std::size_t window = 11;  // pixels, Wang et al. 2004, section III-B
+constexpr double sigma = 1.5;       // pixels
+constexpr double c1 = (0.01 * 255.0) * (0.01 * 255.0);
+constexpr double c2 = (0.03 * 255.0) * (0.03 * 255.0);
+
+std::array<double, window> gaussian() {
+  std::array<double, window> kernel{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < window; ++i) {
+    const double offset = static_cast<double>(i) - static_cast<double>(window / 2);
+    kernel[i] = std::exp(-offset * offset / (2.0 * sigma * sigma));
+    sum += kernel[i];
+  }
+  for (double& weight : kernel) weight /= sum;
+  return kernel;
+}
+
+/// Moments that the index is made of: means, mean squares, mean product.
+enum Plane : std::size_t { mean_a, mean_b, square_a, square_b, product, planes };
+
+/// Moments before filtering, of one row.
+void read_row(const Image8& picture, const Image8& reference, std::uint32_t y, RowRing& raw) {
+  for (std::uint32_t x = 0; x < picture.width; ++x) {
+    const double a = luma_thousandths(&picture.at(x, y, 0)) / 1000.0;
+    const double b = luma_thousandths(&reference.at(x, y, 0)) / 1000.0;
+    raw.row(mean_a, 0)[x] = a;
+    raw.row(mean_b, 0)[x] = b;
+    raw.row(square_a, 0)[x] = a * a;
+    raw.row(square_b, 0)[x] = b * b;
+    raw.row(product, 0)[x] = a * b;
+  }
+}
+
+double index_of(double a, double b, double aa, double bb, double ab) {
+  const double variance_a = std::max(aa - a * a, 0.0);
+  const double variance_b = std::max(bb - b * b, 0.0);
+  const double covariance = ab - a * b;
+  return (2.0 * a * b + c1) * (2.0 * covariance + c2) /
+         ((a * a + b * b + c1) * (variance_a + variance_b + c2));
+}
+
+}  // namespace
+
+double ssim(const Image8& picture, const Image8& reference) {
+  check_pair(picture, reference);
+  if (picture.width < window || picture.height < window)
+    throw bad_value("picture", "SSIM needs pictures of at least 11x11 pixels, not " +
+                                   shape_text(picture.width, picture.height));
+  const std::array<double, window> kernel = gaussian();
+  const std::size_t width = picture.width - window + 1;
+  RowRing raw(planes, picture.width, 1);
+  RowRing filtered(planes, width, window);
+  RowRing moments(planes, width, 1);
+
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < picture.height; ++y) {
+    read_row(picture, reference, y, raw);
+    for (std::size_t plane = 0; plane < planes; ++plane)
+      filter_row(raw.row(plane, 0), kernel, filtered.row(plane, y));
+    if (y + 1 < window) continue;
+
+    // The window ends at this row.
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+      const std::span<double> out = moments.row(plane, 0);
+      std::fill(out.begin(), out.end(), 0.0);
+      for (std::size_t j = 0; j < window; ++j)
+        add_scaled(filtered.row(plane, y + 1 - window + j), kernel[j], out);
+    }
+    for (std::size_t x = 0; x < width; ++x)
+      sum += index_of(moments.row(mean_a, 0)[x], moments.row(mean_b, 0)[x],
+                      moments.row(square_a, 0)[x], moments.row(square_b, 0)[x],
+                      moments.row(product, 0)[x]);
+  }
+  return sum / static_cast<double>(width * (picture.height - window + 1));
+}
+
+}  // namespace penumbra::metrics
