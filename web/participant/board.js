@@ -1,0 +1,184 @@
+// The tray and the shelves. Picture then shelf, dragging and the keyboard all end in `move`.
+
+import { h, icon } from "/assets/shared/dom.js";
+import { make_draggable } from "./drag.js";
+
+const glide_ms = 180;
+
+export class Board {
+  /// `on_change` is told after every move, `on_enlarge(slot)` opens the viewer, `announce(text)`
+  /// speaks to screen readers.
+  constructor({ arrangement, pictures, labels, strings, reference, on_change, on_enlarge, announce }) {
+    Object.assign(this, { arrangement, pictures, labels, strings, on_change, on_enlarge, announce });
+    this.picked = null;
+    this.items = new Map([...pictures.values()].map((picture) => [picture.slot, this.make_picture(picture)]));
+    this.shelves = arrangement.slots.map((_, shelf) => this.make_shelf(shelf));
+    this.tray_list = h("ul", { class: "pictures", "aria-labelledby": "tray-heading" });
+    this.tray_note = h("p", { class: "tray-note" }, icon("check"), strings.tray_empty);
+    this.tray = h("section", { class: "tray", "aria-labelledby": "tray-heading", data: { shelf: "tray" } },
+      h("h2", { id: "tray-heading" }, strings.tray), this.tray_list, this.tray_note);
+    this.rack = h("section", { class: "rack", "aria-labelledby": "rack-heading" },
+      h("h2", { id: "rack-heading", class: "unseen" }, strings.shelves),
+      reference ? h("figure", { class: "true-picture" },
+        h("img", { src: reference.url, alt: strings.reference }),
+        h("figcaption", {}, strings.reference)) : null,
+      h("ol", { class: "shelves", role: "list" }, this.shelves));
+    this.tray.addEventListener("click", (event) => this.clicked_on(event, null));
+    this.refresh();
+  }
+
+  make_picture(picture) {
+    const { strings } = this;
+    const button = h("button", { type: "button", class: "pick", "aria-pressed": "false", draggable: "false" },
+      h("img", { src: picture.url, alt: picture.name, width: picture.width, height: picture.height, draggable: "false" }),
+      h("span", { class: "where unseen" }));
+    const item = h("li", { class: "picture", data: { slot: picture.slot } }, button,
+      h("div", { class: "caption" }, h("span", { "aria-hidden": "true" }, picture.letter),
+        h("button", { type: "button", class: "enlarge", "aria-label": strings.enlarge(picture.name),
+          title: strings.enlarge(picture.name), on: { click: (event) => {
+            event.stopPropagation();
+            this.on_enlarge(picture.slot);
+          } } }, icon("enlarge"))));
+    button.addEventListener("click", (event) => {
+      event.stopPropagation();
+      this.pick(this.picked === picture.slot ? null : picture.slot);
+    });
+    button.addEventListener("keydown", (event) => this.key(event, picture.slot));
+    make_draggable(item, button, {
+      target_at: (x, y) => document.elementFromPoint(x, y)?.closest("[data-shelf]"),
+      on_start: () => this.pick(null),
+      on_drop: (target) => this.move(picture.slot,
+        target.dataset.shelf === "tray" ? null : Number(target.dataset.shelf)),
+    });
+    return item;
+  }
+
+  make_shelf(shelf) {
+    const last = this.arrangement.lowest;
+    const label = shelf === 0 ? this.labels.most : shelf === last ? this.labels.least : "";
+    const place = h("button", { type: "button", class: "place" },
+      h("span", { class: "label", "aria-hidden": "true" }, label),
+      h("span", { class: "offer", "aria-hidden": "true" }, this.strings.put_here));
+    const element = h("li", { class: "shelf", data: { shelf: String(shelf) } }, place, h("ul", { class: "pictures" }));
+    element.classList.toggle("end", label !== "");
+    element.addEventListener("click", (event) => this.clicked_on(event, shelf));
+    return element;
+  }
+
+  clicked_on(event, shelf) {
+    if (this.picked !== null) this.move(this.picked, shelf);
+    else if (event.target.closest(".place")) this.announce(this.strings.pick_first, true);
+  }
+
+  shelf_text(shelf) {
+    return shelf === null ? this.strings.unplaced
+      : this.strings.shelf(shelf, this.arrangement.slots.length, this.labels.most, this.labels.least);
+  }
+
+  pick(slot) {
+    const before = this.picked;
+    this.picked = slot;
+    this.refresh();
+    if (slot !== null) this.announce(this.strings.picked(this.pictures.get(slot).name));
+    else if (before !== null) this.announce(this.strings.released(this.pictures.get(before).name));
+  }
+
+  key(event, slot) {
+    if (event.altKey || event.ctrlKey || event.metaKey) return;
+    const { lowest } = this.arrangement;
+    const now = this.arrangement.shelf_of(slot);
+    const moves = {
+      // From the tray, down enters the shelves at the top and up at the bottom.
+      ArrowUp: () => this.move(slot, now === null ? lowest : now - 1),
+      ArrowDown: () => this.move(slot, now === null ? 0 : now + 1),
+      Home: () => this.move(slot, 0),
+      End: () => this.move(slot, lowest),
+      Delete: () => this.move(slot, null),
+      Backspace: () => this.move(slot, null),
+      ArrowLeft: () => this.focus_neighbour(slot, -1),
+      ArrowRight: () => this.focus_neighbour(slot, 1),
+      Escape: () => this.pick(null),
+      e: () => this.on_enlarge(slot),
+      E: () => this.on_enlarge(slot),
+    };
+    if (!moves[event.key]) return;
+    event.preventDefault();
+    moves[event.key]();
+  }
+
+  focus_neighbour(slot, step) {
+    const buttons = [...this.items.get(slot).parentElement.querySelectorAll(".pick")];
+    const here = buttons.indexOf(this.items.get(slot).querySelector(".pick"));
+    buttons[Math.min(buttons.length - 1, Math.max(0, here + step))].focus();
+  }
+
+  move(slot, shelf) {
+    const { name } = this.pictures.get(slot);
+    const before = this.arrangement.shelf_of(slot);
+    this.arrangement.place(slot, shelf);
+    const now = this.arrangement.shelf_of(slot);
+    this.picked = null;
+    this.glide(() => this.refresh());
+    this.focus(slot);
+    if (before === now) {
+      if (now !== null) this.announce(this.strings.at_end(name, this.shelf_text(now)));
+      return;
+    }
+    const others = now === null ? []
+      : this.arrangement.on(now).filter((other) => other !== slot).map((other) => this.pictures.get(other).name);
+    this.announce(now === null ? this.strings.taken_back(name)
+      : this.strings.moved(name, this.shelf_text(now), others));
+    this.on_change();
+  }
+
+  focus(slot) {
+    const item = this.items.get(slot);
+    item.querySelector(".pick").focus({ preventScroll: true });
+    item.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+
+  /// Lets pictures glide from where they were to where `change` puts them.
+  glide(change) {
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const before = new Map([...this.items].map(([slot, item]) => [slot, item.getBoundingClientRect()]));
+    change();
+    for (const item of this.items.values()) item.style.transform = "";  // where a drag left it
+    if (still) return;
+    for (const [slot, item] of this.items) {
+      const after = item.getBoundingClientRect();
+      const [x, y] = [before.get(slot).left - after.left, before.get(slot).top - after.top];
+      if (Math.abs(x) + Math.abs(y) < 1) continue;
+      item.animate([{ transform: `translate(${x}px, ${y}px)` }, { transform: "none" }],
+        { duration: glide_ms, easing: "cubic-bezier(.2, .7, .2, 1)" });
+    }
+  }
+
+  /// Brings the elements into the state of the arrangement.
+  refresh() {
+    const { arrangement, strings } = this;
+    this.fill(this.tray_list, arrangement.unplaced);
+    this.tray.classList.toggle("empty", arrangement.unplaced.length === 0);
+    for (const [shelf, element] of this.shelves.entries()) {
+      const here = arrangement.on(shelf);
+      this.fill(element.querySelector(".pictures"), here);
+      element.classList.toggle("filled", here.length > 0);
+      element.querySelector(".place").setAttribute("aria-label", this.picked === null
+        ? strings.shelf_holds(this.shelf_text(shelf), here.map((slot) => this.pictures.get(slot).name))
+        : strings.put_on(this.pictures.get(this.picked).name, this.shelf_text(shelf)));
+    }
+    this.rack.classList.toggle("picking", this.picked !== null);
+    this.tray.classList.toggle("picking", this.picked !== null);
+    for (const [slot, item] of this.items) {
+      item.classList.toggle("picked", slot === this.picked);
+      item.querySelector(".pick").setAttribute("aria-pressed", String(slot === this.picked));
+      item.querySelector(".where").textContent = `, ${this.shelf_text(arrangement.shelf_of(slot))}`;
+    }
+  }
+
+  fill(list, slots) {
+    const wanted = slots.map((slot) => this.items.get(slot));
+    // Moving an element drops its focus and restarts its picture: move only what is not there yet.
+    if (wanted.every((item, index) => list.children[index] === item) && list.children.length === wanted.length) return;
+    list.replaceChildren(...wanted);
+  }
+}

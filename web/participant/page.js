@@ -1,0 +1,167 @@
+// One page of the survey: its pictures, the order given to them, and how hard that was.
+
+import { h } from "/assets/shared/dom.js";
+import { Arrangement } from "./arrangement.js";
+import { Board } from "./board.js";
+import { confirm_order } from "./confirm.js";
+import { DigitBoard } from "./numeric.js";
+import { Observations } from "./observations.js";
+import { Viewer } from "./viewer.js";
+
+export class RankingPage {
+  /// `page` as the server describes it, `pictures` loaded; `kept` is what a reload or an earlier
+  /// visit left: {shelves|digits, all_same, difficulty, observations}.
+  constructor({ page, pictures, texts, strings, widget, kept, announce, save, submit, back }) {
+    Object.assign(this, { page, pictures, texts, strings, announce, save, submit, back });
+    this.practice = page.kind === "practice";
+    this.observations = new Observations(kept.observations);
+    const shared = { pictures, strings, labels: texts.labels,
+      on_change: () => this.changed(), on_enlarge: (slot) => this.enlarge(slot) };
+    if (widget === "numeric") {
+      this.digits = new DigitBoard({ ...shared, digits: kept.digits ?? {} });
+    } else {
+      this.arrangement = new Arrangement([...pictures.keys()], kept.shelves, kept.all_same ?? false);
+      this.board = new Board({ ...shared, arrangement: this.arrangement, reference: page.reference, announce });
+    }
+    this.element = this.make(kept.difficulty ?? null);
+    this.follow();
+  }
+
+  make(difficulty) {
+    const { strings, texts } = this;
+    this.problems = h("div", { class: "problems", role: "alert" });
+    this.same = h("input", { type: "checkbox", id: "all-same", on: { change: () => {
+      this.arrangement.all_same = this.same.checked;
+      this.changed();
+    } } });
+    if (this.arrangement) this.same.checked = this.arrangement.all_same;
+    this.difficulty = h("fieldset", { class: "difficulty" },
+      h("legend", {}, texts.difficulty.question),
+      h("div", { class: "steps" }, texts.difficulty.labels.map((label, index) => h("label", { class: "step" },
+        h("input", { type: "radio", name: "difficulty", value: String(index + 1),
+          checked: difficulty === index + 1, on: { change: () => this.changed() } }),
+        h("span", {}, label)))));
+    const finish = h("section", { class: "finish" },
+      this.arrangement ? h("label", { class: "choice same", for: "all-same" }, this.same, h("span", {}, strings.all_same)) : null,
+      this.difficulty, this.problems,
+      h("div", { class: "actions" },
+        h("button", { type: "button", class: "primary next", on: { click: () => this.leave() } }, strings.next),
+        this.back ? h("button", { type: "button", class: "quiet", on: { click: this.back } }, strings.back) : null));
+    this.work = h("div", { class: `work ${this.digits ? "typed" : "shelved"}`, data: { count: String(this.pictures.size) } },
+      this.digits ? this.digits.element : [this.board.tray, this.board.rack], finish);
+    this.work.classList.toggle("few", this.pictures.size <= 4);
+    return h("div", { class: "stage" },
+      h("div", { class: "question" },
+        this.practice ? h("p", { class: "practice" }, h("strong", {}, strings.practice), ` ${strings.practice_text}`) : null,
+        h("h1", { tabindex: "-1" }, this.page.question),
+        this.digits ? null : h("details", { class: "ways" }, h("summary", {}, strings.how_heading), h("p", {}, strings.how_ways))),
+      this.work);
+  }
+
+  get chosen_difficulty() {
+    const checked = this.difficulty.querySelector("input:checked");
+    return checked ? Number(checked.value) : null;
+  }
+
+  enlarge(slot) {
+    this.viewer = new Viewer({ pictures: this.pictures, strings: this.strings,
+      on_flip: () => this.note("flipped"), on_show: () => this.note("enlarged") });
+    this.viewer.open(slot);
+  }
+
+  note(what) {
+    this.observations.count(what);
+    this.save(this.draft());
+  }
+
+  changed() {
+    this.follow();
+    this.problems.replaceChildren();
+    this.save(this.draft());
+  }
+
+  /// The look that goes with the state: shelves rest while "all the same" is chosen.
+  follow() {
+    if (!this.arrangement) return;
+    const { all_same, unplaced } = this.arrangement;
+    this.work.classList.toggle("same", all_same);
+    this.board.rack.inert = all_same;
+    this.work.classList.toggle("placed", unplaced.length === 0);
+  }
+
+  draft() {
+    return {
+      ...(this.digits ? { digits: this.digits.answer() }
+        : { shelves: this.arrangement.draft(), all_same: this.arrangement.all_same }),
+      difficulty: this.chosen_difficulty,
+      observations: this.observations.draft(),
+    };
+  }
+
+  /// What is missing, in the order of the page: [{text, focus}].
+  missing() {
+    const found = [];
+    const names = (slots) => slots.map((slot) => this.pictures.get(slot).name);
+    if (this.digits?.missing.length) {
+      const slots = this.digits.missing;
+      found.push({ text: this.strings.digits_missing(names(slots)), focus: () => this.digits.focus(slots[0]) });
+    }
+    if (this.arrangement && !this.arrangement.complete) {
+      const slots = this.arrangement.unplaced;
+      found.push({ text: this.strings.unplaced_missing(names(slots)), focus: () => this.board.focus(slots[0]) });
+    }
+    if (!this.practice && this.chosen_difficulty === null) {
+      found.push({ text: this.strings.difficulty_missing, focus: () => this.difficulty.querySelector("input").focus() });
+    }
+    return found;
+  }
+
+  async leave() {
+    const missing = this.missing();
+    this.problems.replaceChildren(...(missing.length ? [h("h3", {}, this.strings.missing_heading),
+      h("ul", {}, missing.map(({ text, focus }) =>
+        h("li", {}, h("button", { type: "button", class: "link", on: { click: focus } }, text))))] : []));
+    if (missing.length) {
+      missing[0].focus();
+      return;
+    }
+    if (await confirm_order({ pictures: this.pictures, strings: this.strings,
+      ends: () => this.ends(), turn_round: () => this.turn_round() })) {
+      await this.submit(this.answer());
+    }
+  }
+
+  ends() {
+    if (this.digits) return this.digits.ends();
+    if (this.arrangement.flat) return null;
+    return { most: this.arrangement.most_realistic, least: this.arrangement.least_realistic };
+  }
+
+  turn_round() {
+    this.observations.swapped();
+    (this.digits ?? this.arrangement).turn_round();
+    this.board?.refresh();
+    this.changed();
+  }
+
+  /// The answer without its id.
+  answer() {
+    const difficulty = this.chosen_difficulty;
+    return {
+      ...(this.digits ? { digits: this.digits.answer() }
+        : { shelves: this.arrangement.answer(), all_same: this.arrangement.all_same }),
+      ...(difficulty === null ? {} : { difficulty }),
+      ...this.observations.answer(),
+    };
+  }
+
+  show() {
+    this.observations.start();
+  }
+
+  hide() {
+    this.observations.stop();
+    this.viewer?.dialog.close();
+    this.save(this.draft());
+  }
+}
