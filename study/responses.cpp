@@ -1,0 +1,350 @@
+#include "study/responses.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <tuple>
+
+#include "renderer/error.h"
+#include "study/csv.h"
+
+namespace penumbra::study {
+
+namespace {
+
+constexpr std::string_view dangerous = std::string_view("=+-@\t\r\0", 7);
+
+bool is_dangerous(std::string_view cell) {
+  return !cell.empty() && dangerous.find(cell.front()) != std::string_view::npos;
+}
+
+/// Undoes the writer's apostrophe. A cell that began with an apostrophe itself was left alone,
+/// unless a dangerous character follows it; those few lose theirs.
+std::string read_text(const std::string& cell) {
+  const bool guarded = cell.size() > 1 && cell.front() == '\'' && is_dangerous(cell.substr(1));
+  return guarded ? cell.substr(1) : cell;
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+double read_number(const std::string& cell, double low, double high) {
+  double value = 0.0;
+  const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const bool whole = result.ec == std::errc() && result.ptr == cell.data() + cell.size();
+  if (!whole || !(value >= low && value <= high)) {
+    throw bad_value("", "number from " + number_text(low) + " to " + number_text(high) +
+                            " expected, found `" + cell + "`");
+  }
+  return value;
+}
+
+int read_whole(const std::string& cell, int low, int high) {
+  const double value = read_number(cell, low, high);
+  if (std::floor(value) != value)
+    throw bad_value("", "whole number expected, found `" + cell + "`");
+  return static_cast<int>(value);
+}
+
+bool read_flag(const std::string& cell) {
+  for (const char* name : {"true", "TRUE", "True", "1"}) {
+    if (cell == name) return true;
+  }
+  for (const char* name : {"false", "FALSE", "False", "0"}) {
+    if (cell == name) return false;
+  }
+  throw bad_value("", "true or false expected, found `" + cell + "`");
+}
+
+/// A column and how it stands in a row.
+struct Field {
+  Column column;
+  bool required = false;
+  std::function<std::string(const ResponseRow&)> write;
+  std::function<void(ResponseRow&, const std::string&)> read;
+};
+
+constexpr double max_ms = 1e10;
+constexpr int max_count = 1'000'000'000;
+
+Field text_field(const char* name, const char* meaning, std::string ResponseRow::*member,
+                 bool required = false) {
+  return {{name, "text", meaning},
+          required,
+          [member](const ResponseRow& row) { return csv_text(row.*member); },
+          [member, required](ResponseRow& row, const std::string& cell) {
+            if (required && cell.empty()) throw bad_value("", "may not be empty");
+            row.*member = read_text(cell);
+          }};
+}
+
+Field count_field(const char* name, const char* meaning, int ResponseRow::*member) {
+  return {{name, "integer", meaning},
+          false,
+          [member](const ResponseRow& row) { return std::to_string(row.*member); },
+          [member](ResponseRow& row, const std::string& cell) {
+            row.*member = cell.empty() ? 0 : read_whole(cell, 0, max_count);
+          }};
+}
+
+Field integer_field(const char* name, const char* meaning, std::optional<int> ResponseRow::*member,
+                    int low, int high, bool required = false) {
+  return {{name, "integer", meaning},
+          required,
+          [member](const ResponseRow& row) {
+            return row.*member ? std::to_string(*(row.*member)) : std::string();
+          },
+          [member, low, high](ResponseRow& row, const std::string& cell) {
+            if (!cell.empty()) row.*member = read_whole(cell, low, high);
+          }};
+}
+
+Field real_field(const char* name, const char* meaning,
+                 std::optional<double> ResponseRow::*member) {
+  return {{name, "number", meaning},
+          false,
+          [member](const ResponseRow& row) {
+            return row.*member ? number_text(*(row.*member)) : std::string();
+          },
+          [member](ResponseRow& row, const std::string& cell) {
+            if (!cell.empty()) row.*member = read_number(cell, 0.0, max_ms);
+          }};
+}
+
+Field rank_field() {
+  return {
+      {"rank_1_is_most_realistic", "number", "mid-rank on the page: equal pictures share the mean"},
+      true,
+      [](const ResponseRow& row) { return number_text(row.rank); },
+      [](ResponseRow& row, const std::string& cell) { row.rank = read_number(cell, 1.0, 1e6); }};
+}
+
+Field swapped_field() {
+  return {{"swapped_direction", "boolean",
+           "the button that turns the order round was used; ranks are those after it"},
+          false,
+          [](const ResponseRow& row) {
+            return row.swapped_direction ? std::string(*row.swapped_direction ? "true" : "false")
+                                         : std::string();
+          },
+          [](ResponseRow& row, const std::string& cell) {
+            if (!cell.empty()) row.swapped_direction = read_flag(cell);
+          }};
+}
+
+Field included_field() {
+  return {{"included", "boolean", "false where a researcher took the participant out"},
+          false,
+          [](const ResponseRow& row) { return std::string(row.included ? "true" : "false"); },
+          [](ResponseRow& row, const std::string& cell) {
+            row.included = cell.empty() || read_flag(cell);
+          }};
+}
+
+const std::vector<Field>& fields() {
+  using Row = ResponseRow;
+  static const std::vector<Field> list{
+      text_field("study", "id of the study", &Row::study),
+      text_field("study_hash", "SHA-256 of the study as it was published", &Row::study_hash),
+      text_field("participant", "pseudonym", &Row::participant, true),
+      count_field("page_index", "position at which the participant saw the page, from 0",
+                  &Row::page_index),
+      count_field("repeat", "0 first showing, 1 second, which measures reliability only",
+                  &Row::repeat),
+      text_field("scene", "the page's id: its scene unless the study names it", &Row::scene, true),
+      text_field("technique", "the picture's id: its technique unless the study names it",
+                 &Row::technique, true),
+      text_field("preset", "technique or preset that was rendered", &Row::preset),
+      text_field("parameters_hash", "hash of the parameters that the study gave the picture",
+                 &Row::parameters_hash),
+      integer_field("slot", "position on the page, from 0", &Row::slot, 0, max_count),
+      rank_field(),
+      integer_field("shelf_0_is_most_realistic", "shelf the picture was put on", &Row::shelf, 0,
+                    max_count),
+      integer_field("digit_as_typed", "1 to 9, where digits were typed", &Row::digit, 1, 9),
+      integer_field("difficulty_1_hard_to_see_5_easy", "answer about the page", &Row::difficulty, 1,
+                    5, true),
+      real_field("weight", "of the page in weighted means; the difficulty unless given",
+                 &Row::weight),
+      real_field("active_ms", "milliseconds with the page in front and focused", &Row::active_ms),
+      real_field("total_ms", "milliseconds from showing the page to its answer", &Row::total_ms),
+      integer_field("enlarged", "how often a picture of the page was enlarged", &Row::enlarged, 0,
+                    max_count),
+      integer_field("flipped", "how often two pictures were flipped in place", &Row::flipped, 0,
+                    max_count),
+      swapped_field(),
+      text_field("flags", "names of the participant's flags, separated by blanks", &Row::flags),
+      included_field(),
+      text_field("started_at", "when the participant entered, ISO 8601, UTC", &Row::started_at),
+      text_field("answered_at", "when the server stored the answer, ISO 8601, UTC",
+                 &Row::answered_at),
+  };
+  return list;
+}
+
+/// Index of the cell for every field, npos where the file has no such column.
+std::vector<std::size_t> find_columns(const CsvRecord& header) {
+  std::vector<std::size_t> cells;
+  for (const Field& field : fields()) {
+    const std::string& name = field.column.name;
+    const auto found = std::find(header.cells.begin(), header.cells.end(), name);
+    if (found == header.cells.end()) {
+      if (field.required) throw unreadable("the header has no column `" + name + "`", name);
+      cells.push_back(std::string::npos);
+      continue;
+    }
+    if (std::find(found + 1, header.cells.end(), name) != header.cells.end()) {
+      throw unreadable("the header has the column `" + name + "` twice", name);
+    }
+    cells.push_back(static_cast<std::size_t>(found - header.cells.begin()));
+  }
+  return cells;
+}
+
+ResponseRow read_row(const CsvRecord& record, const std::vector<std::size_t>& cells) {
+  ResponseRow row;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == std::string::npos) continue;
+    const std::string& name = fields()[i].column.name;
+    try {
+      fields()[i].read(row, record.cells[cells[i]]);
+    } catch (const Error& error) {
+      throw unreadable(
+          "line " + std::to_string(record.line) + ", column " + name + ": " + error.what(), name);
+    }
+  }
+  return row;
+}
+
+/// Hash of the parameters as the study gave them: FNV-1a over the canonical text, 16 digits. It
+/// tells pictures apart; nothing secret hangs on it.
+std::string parameters_hash(const nlohmann::json& parameters) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char byte : parameters.dump()) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ull;
+  }
+  std::string text(16, '0');
+  for (std::size_t i = 0; i < 16; ++i) text[15 - i] = "0123456789abcdef"[(hash >> (4 * i)) & 15];
+  return text;
+}
+
+}  // namespace
+
+std::vector<ResponseRow> response_rows(const Study& study, const std::string& hash,
+                                       const std::string& participant, const PlannedPage& planned,
+                                       int page_index, const Answer& answer,
+                                       const std::string& answered_at) {
+  const Page& page = page_of(study, planned);
+  const auto ranks = doubled_mid_ranks(answer.order());
+  std::vector<ResponseRow> rows;
+  for (std::size_t slot = 0; slot < planned.slots.size(); ++slot) {
+    const Picture& picture = page.pictures.at(planned.slots[slot]);
+    ResponseRow row;
+    row.study = study.id;
+    row.study_hash = hash;
+    row.participant = participant;
+    row.page_index = page_index;
+    row.repeat = planned.kind == PageKind::repeat ? 1 : 0;
+    row.scene = page.id;
+    row.technique = picture.id;
+    row.preset = picture.technique;
+    row.parameters_hash = parameters_hash(picture.parameters);
+    row.slot = static_cast<int>(slot);
+    row.rank = ranks.at(slot) / 2.0;
+    if (!answer.shelves.empty()) row.shelf = answer.shelves[slot];
+    if (!answer.digits.empty()) row.digit = answer.digits[slot];
+    if (answer.difficulty > 0) {
+      row.difficulty = answer.difficulty;
+      row.weight = answer.difficulty;
+    }
+    row.active_ms = answer.observations.active_ms;
+    row.total_ms = answer.observations.total_ms;
+    row.enlarged = answer.observations.enlargements;
+    row.flipped = answer.observations.flips;
+    row.swapped_direction = answer.observations.swaps > 0;
+    row.answered_at = answered_at;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+const std::vector<Column>& response_columns() {
+  static const std::vector<Column> columns = [] {
+    std::vector<Column> list;
+    for (const Field& field : fields()) list.push_back(field.column);
+    return list;
+  }();
+  return columns;
+}
+
+std::string csv_text(std::string_view cell) {
+  std::string text = is_dangerous(cell) ? "'" + std::string(cell) : std::string(cell);
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char character : text) {
+    if (character == '"') quoted += '"';
+    quoted += character;
+  }
+  return quoted + "\"";
+}
+
+std::string write_responses(const std::vector<ResponseRow>& rows) {
+  std::string text;
+  for (const Field& field : fields()) {
+    text += (text.empty() ? "" : ",") + field.column.name;
+  }
+  text += "\r\n";
+  for (const ResponseRow& row : rows) {
+    bool first = true;
+    for (const Field& field : fields()) {
+      if (!first) text += ',';
+      first = false;
+      text += field.write(row);
+    }
+    text += "\r\n";
+  }
+  return text;
+}
+
+std::string write_codebook() {
+  std::string text = "column,type,meaning\r\n";
+  for (const Column& column : response_columns()) {
+    text += csv_text(column.name) + "," + csv_text(column.type) + "," + csv_text(column.meaning) +
+            "\r\n";
+  }
+  return text;
+}
+
+std::vector<ResponseRow> parse_responses(std::string_view text) {
+  const auto records = parse_csv(text);
+  if (records.empty()) throw unreadable("the file has no header");
+  const auto cells = find_columns(records.front());
+  std::vector<ResponseRow> rows;
+  std::set<std::tuple<std::string, std::string, int, int, std::string>> seen;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const CsvRecord& record = records[i];
+    if (record.cells.size() != records.front().cells.size()) {
+      throw unreadable("line " + std::to_string(record.line) + ": " +
+                       std::to_string(record.cells.size()) + " cells, the header has " +
+                       std::to_string(records.front().cells.size()));
+    }
+    rows.push_back(read_row(record, cells));
+    const ResponseRow& row = rows.back();
+    if (!seen.emplace(row.participant, row.scene, row.page_index, row.repeat, row.technique)
+             .second) {
+      throw unreadable("line " + std::to_string(record.line) + ", column technique: `" +
+                           row.technique + "` stands twice on this page of `" + row.participant +
+                           "`",
+                       "technique");
+    }
+  }
+  return rows;
+}
+
+}  // namespace penumbra::study

@@ -1,0 +1,64 @@
+#include "study/statistics/distributions.h"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+
+namespace penumbra::study::statistics {
+
+namespace bm = boost::math;
+
+double chi_square_tail(double x, double df) {
+  return bm::cdf(bm::complement(bm::chi_squared(df), std::max(x, 0.0)));
+}
+
+double f_tail(double x, double df1, double df2) {
+  if (std::isinf(x)) return 0.0;
+  return bm::cdf(bm::complement(bm::fisher_f(df1, df2), std::max(x, 0.0)));
+}
+
+double normal_tail(double x) {
+  return bm::cdf(bm::complement(bm::normal(), x));
+}
+
+double t_two_sided(double t, double df) {
+  if (std::isinf(t)) return 0.0;
+  return 2.0 * bm::cdf(bm::complement(bm::students_t(df), std::abs(t)));
+}
+
+double t_quantile(double p, double df) {
+  return bm::quantile(bm::students_t(df), p);
+}
+
+double studentized_range_tail(double q, int k) {
+  if (q <= 0.0) return 1.0;
+  // The integrand is analytic and falls like a Gaussian on both sides, so the trapezium rule
+  // converges faster than any power of the step; all of its terms are positive.
+  constexpr double step = 1.0 / 32.0;
+  constexpr double reach = 12.0;
+  const bm::normal normal;
+  const int steps = static_cast<int>((q + 2.0 * reach) / step);
+  double sum = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const double z = -reach + step * i;
+    const double below = bm::cdf(normal, z);
+    const double share = std::min(1.0, bm::cdf(normal, z - q) / below);
+    // Phi^(k-1) - (Phi - Phi(z-q))^(k-1) = Phi^(k-1) (1 - (1 - share)^(k-1))
+    const double brace = share < 1.0 ? -std::expm1((k - 1) * std::log1p(-share)) : 1.0;
+    sum += bm::pdf(normal, z) * std::pow(below, k - 1) * brace;
+  }
+  return std::min(1.0, k * step * sum);
+}
+
+double studentized_range_quantile(double p, int k) {
+  const auto excess = [&](double q) { return studentized_range_tail(q, k) - p; };
+  std::uintmax_t iterations = 200;
+  const auto bracket =
+      bm::tools::toms748_solve(excess, 0.0, 60.0, bm::tools::eps_tolerance<double>(50), iterations);
+  return 0.5 * (bracket.first + bracket.second);
+}
+
+}  // namespace penumbra::study::statistics

@@ -1,0 +1,23 @@
+#pragma once
+
+namespace penumbra::study::statistics {
+
+/// Upper tails: P(X > x).
+double chi_square_tail(double x, double df);
+double f_tail(double x, double df1, double df2);  ///< 0 for infinite x
+double normal_tail(double x);
+
+/// P(|T| > |t|), Student's t.
+double t_two_sided(double t, double df);
+
+/// Quantile of Student's t: P(T <= q) = p.
+double t_quantile(double p, double df);
+
+/// P(Q > q) of the studentized range of `k` standard normals at infinite degrees of freedom:
+/// k * integral of phi(z) {Phi(z)^(k-1) - [Phi(z) - Phi(z-q)]^(k-1)} dz, without cancellation.
+double studentized_range_tail(double q, int k);
+
+/// q with P(Q > q) = p, 0 < p < 1.
+double studentized_range_quantile(double p, int k);
+
+}  // namespace penumbra::study::statistics
