@@ -17,16 +17,15 @@ enum class ParameterScale { linear, logarithmic };
 /// One parameter of a technique, declared once. The GLSL names, validation, JSON Schema, web form,
 /// README table check and sweep ranges are all derived from this.
 struct Parameter {
-  // Empty initialisers let declarations leave out what does not apply, by name.
-  std::string name{};
+  std::string name;
   ParameterType type = ParameterType::real;
-  ParameterValue default_value{};
+  ParameterValue default_value;
   double minimum = 0.0;
   double maximum = 1.0;
   ParameterScale scale = ParameterScale::linear;
-  std::string unit{};                  ///< "m", "texels", "degrees", "" for plain numbers
-  std::vector<std::string> choices{};  ///< of type choice
-  std::string meaning{};
+  std::string unit;                  ///< "m", "texels", "degrees", "" for plain numbers
+  std::vector<std::string> choices;  ///< of type choice
+  std::string meaning;
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
 };
 
