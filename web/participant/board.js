@@ -47,8 +47,8 @@ export class Board {
     make_draggable(item, button, {
       target_at: (x, y) => document.elementFromPoint(x, y)?.closest("[data-shelf]"),
       on_start: () => this.pick(null),
-      on_drop: (target) => this.move(picture.slot,
-        target.dataset.shelf === "tray" ? null : Number(target.dataset.shelf)),
+      on_drop: (target, rectangle) => this.move(picture.slot,
+        target.dataset.shelf === "tray" ? null : Number(target.dataset.shelf), rectangle),
     });
     return item;
   }
@@ -112,13 +112,14 @@ export class Board {
     buttons[Math.min(buttons.length - 1, Math.max(0, here + step))].focus();
   }
 
-  move(slot, shelf) {
+  /// `from` is where a dragged picture was let go, if it was dragged.
+  move(slot, shelf, from = null) {
     const { name } = this.pictures.get(slot);
     const before = this.arrangement.shelf_of(slot);
     this.arrangement.place(slot, shelf);
     const now = this.arrangement.shelf_of(slot);
     this.picked = null;
-    this.glide(() => this.refresh());
+    this.glide(() => this.refresh(), from ? new Map([[slot, from]]) : new Map());
     this.focus(slot);
     if (before === now) {
       if (now !== null) this.announce(this.strings.at_end(name, this.shelf_text(now)));
@@ -137,12 +138,11 @@ export class Board {
     item.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 
-  /// Lets pictures glide from where they were to where `change` puts them.
-  glide(change) {
+  /// Lets pictures glide from where they were, or from `starts`, to where `change` puts them.
+  glide(change, starts) {
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const before = new Map([...this.items].map(([slot, item]) => [slot, item.getBoundingClientRect()]));
+    const before = new Map([...this.items].map(([slot, item]) => [slot, starts.get(slot) ?? item.getBoundingClientRect()]));
     change();
-    for (const item of this.items.values()) item.style.transform = "";  // where a drag left it
     if (still) return;
     for (const [slot, item] of this.items) {
       const after = item.getBoundingClientRect();

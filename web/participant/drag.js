@@ -6,13 +6,20 @@ const hold_ms = 280;
 const edge_px = 70;
 const scroll_px = 14;
 
+/// A copy of the picture follows the pointer; the picture itself stays in its list until it is
+/// dropped, so that nothing scrolls or reflows under the hand.
 class Drag {
-  constructor(item, handlers, event) {
-    Object.assign(this, { item, handlers, pointer: event.pointerId });
-    this.from = [event.clientX, event.clientY];
+  constructor(item, picture, handlers, { clientX, clientY }) {
+    Object.assign(this, { item, handlers });
+    this.from = [clientX, clientY];
     this.at = this.from;
-    this.scroll_from = [scrollX, scrollY];
     this.target = null;
+    const { left, top, width } = picture.getBoundingClientRect();
+    this.ghost = picture.cloneNode();
+    this.ghost.alt = "";
+    this.ghost.className = "ghost";
+    Object.assign(this.ghost.style, { left: `${left}px`, top: `${top}px`, width: `${width}px` });
+    document.body.append(this.ghost);
     item.classList.add("dragged");
     document.documentElement.classList.add("dragging");
     this.escaping = new AbortController();
@@ -24,8 +31,7 @@ class Drag {
 
   move(x, y) {
     this.at = [x, y];
-    const moved = [x - this.from[0] + scrollX - this.scroll_from[0], y - this.from[1] + scrollY - this.scroll_from[1]];
-    this.item.style.transform = `translate(${moved[0]}px, ${moved[1]}px)`;
+    this.ghost.style.transform = `translate(${x - this.from[0]}px, ${y - this.from[1]}px)`;
     const target = this.handlers.target_at(x, y);
     if (target === this.target) return;
     this.target?.classList.remove("over");
@@ -49,13 +55,14 @@ class Drag {
     this.target?.classList.remove("over");
     this.item.classList.remove("dragged");
     document.documentElement.classList.remove("dragging");
-    if (drop && this.target) this.handlers.on_drop(this.target);
-    this.item.style.transform = "";
+    const rectangle = this.ghost.getBoundingClientRect();
+    this.ghost.remove();
+    if (drop && this.target) this.handlers.on_drop(this.target, rectangle);
   }
 }
 
 /// Lets `item` be dragged by `handle`. Handlers: target_at(x, y) -> element or null, on_start(),
-/// on_drop(target).
+/// on_drop(target, rectangle of the picture at that moment).
 export function make_draggable(item, handle, handlers) {
   let pressed = null;  // {pointer, x, y, hold}
   let drag = null;
@@ -77,7 +84,7 @@ export function make_draggable(item, handle, handlers) {
   const begin = (event) => {
     clearTimeout(pressed.hold);
     handle.setPointerCapture(pressed.pointer);
-    drag = new Drag(item, { ...handlers, on_escape: () => finish(false) }, event);
+    drag = new Drag(item, handle.querySelector("img"), { ...handlers, on_escape: () => finish(false) }, event);
   };
 
   handle.addEventListener("pointerdown", (event) => {

@@ -1,6 +1,6 @@
 // After the last page: questions about the person, the codes, and the way to have answers deleted.
 
-import { h, icon } from "/assets/shared/dom.js";
+import { h, icon, paragraphs } from "/assets/shared/dom.js";
 import { ApiError, remove } from "/assets/shared/http.js";
 
 /// Asked once, after the pages, so that they cannot colour the answers. `done(answers)`.
@@ -39,8 +39,9 @@ function code_box(heading, code, strings, ...more) {
     h("div", { class: "code-line" }, selectable, navigator.clipboard ? copy : null), more);
 }
 
-export function end_view({ entry, strings, forget }) {
+export function end_view({ entry, strings, thanks, forget }) {
   return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.end_heading),
+    paragraphs(thanks),
     entry.completion_code ? code_box(strings.completion, entry.completion_code, strings,
       entry.completion_url ? h("p", {}, h("a", { class: "primary", href: entry.completion_url, rel: "noreferrer" },
         strings.completion_link)) : null) : null,

@@ -46,7 +46,7 @@ class Course {
   }
 
   get texts() {
-    return texts_of(this.person?.entry.texts ?? this.welcome.texts[this.language]);
+    return texts_of(this.welcome, this.language);
   }
 
   /// Runs a step; where the server cannot be reached, says so and offers the same step again.
@@ -127,7 +127,7 @@ class Course {
 
   show_instructions() {
     load_ahead(this.person.pages[0]);
-    this.show(instruction_view({ texts: this.texts, strings: this.strings,
+    this.show(instruction_view({ texts: this.texts, strings: this.strings, code: this.person.entry.withdrawal_code,
       count: (seen) => this.keep_details({ patches_seen: seen ?? undefined }),
       begin: async () => {
         await this.storage.set(this.person.key("begun"), true);
@@ -200,7 +200,7 @@ class Course {
 
   show_end() {
     const { person } = this;
-    this.show(end_view({ entry: person.entry, strings: this.strings, forget: () => person.forget() }));
+    this.show(end_view({ entry: person.entry, strings: this.strings, thanks: this.texts.thanks, forget: () => person.forget() }));
   }
 
   outbox_changed() {

@@ -63,10 +63,12 @@ export class Observations {
   /// The fields of an answer. Window and screen in CSS pixels, times in ms.
   answer() {
     const counts = this.draft();
+    const total_ms = Math.max(0, Date.now() - Date.parse(counts.started_at));
     return {
       ...counts,
-      active_ms: Math.round(counts.active_ms),
-      total_ms: Math.max(0, Date.now() - Date.parse(counts.started_at)),
+      // Two clocks: the steady one may run a little ahead of the calendar's.
+      active_ms: Math.min(total_ms, Math.round(counts.active_ms)),
+      total_ms,
       window: { width: innerWidth, height: innerHeight },
       screen: { width: screen.width, height: screen.height },
       device_pixel_ratio: devicePixelRatio,

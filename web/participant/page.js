@@ -48,7 +48,7 @@ export class RankingPage {
         h("button", { type: "button", class: "primary next", on: { click: () => this.leave() } }, strings.next),
         this.back ? h("button", { type: "button", class: "quiet", on: { click: this.back } }, strings.back) : null));
     this.work = h("div", { class: `work ${this.digits ? "typed" : "shelved"}`, data: { count: String(this.pictures.size) } },
-      this.digits ? this.digits.element : [this.board.tray, this.board.rack], finish);
+      this.digits ? this.digits.element : [h("div", { class: "tray-place" }, this.board.tray), this.board.rack], finish);
     this.work.classList.toggle("few", this.pictures.size <= 4);
     return h("div", { class: "stage" },
       h("div", { class: "question" },
@@ -77,6 +77,7 @@ export class RankingPage {
   changed() {
     this.follow();
     this.problems.replaceChildren();
+    this.difficulty.classList.remove("lacking");
     this.save(this.draft());
   }
 
@@ -108,7 +109,7 @@ export class RankingPage {
     }
     if (this.arrangement && !this.arrangement.complete) {
       const slots = this.arrangement.unplaced;
-      found.push({ text: this.strings.unplaced_missing(names(slots)), focus: () => this.board.focus(slots[0]) });
+      found.push({ text: this.strings.unplaced_missing(names(slots), this.pictures.size), focus: () => this.board.focus(slots[0]) });
     }
     if (!this.practice && this.chosen_difficulty === null) {
       found.push({ text: this.strings.difficulty_missing, focus: () => this.difficulty.querySelector("input").focus() });
@@ -121,6 +122,7 @@ export class RankingPage {
     this.problems.replaceChildren(...(missing.length ? [h("h3", {}, this.strings.missing_heading),
       h("ul", {}, missing.map(({ text, focus }) =>
         h("li", {}, h("button", { type: "button", class: "link", on: { click: focus } }, text))))] : []));
+    this.difficulty.classList.toggle("lacking", !this.practice && this.chosen_difficulty === null);
     if (missing.length) {
       missing[0].focus();
       return;

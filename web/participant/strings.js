@@ -79,8 +79,8 @@ const en = {
   all_same: "They all look the same to me",
   enlarge: (picture) => `Enlarge ${picture}`,
   difficulty_missing: "Please say how hard it was to see a difference.",
-  unplaced_missing: (names) =>
-    `${names.length === 1 ? `${names[0]} is` : `${names.slice(0, -1).join(", ")} and ${names.at(-1)} are`} not on a shelf yet.`,
+  unplaced_missing: (names, all) => (names.length === all ? "No picture is on a shelf yet."
+    : `Not on a shelf yet: ${names.join(", ")}.`),
   digits_missing: (names) => `Please rank ${names.join(", ")}.`,
   missing_heading: "Something is missing",
   next: "Continue",
@@ -186,8 +186,8 @@ const nl = {
   all_same: "Ze zien er voor mij allemaal hetzelfde uit",
   enlarge: (picture) => `Vergroot ${picture}`,
   difficulty_missing: "Geef aan hoe moeilijk het was om verschil te zien.",
-  unplaced_missing: (names) =>
-    `${names.length === 1 ? `${names[0]} staat` : `${names.slice(0, -1).join(", ")} en ${names.at(-1)} staan`} nog niet op een plank.`,
+  unplaced_missing: (names, all) => (names.length === all ? "Er staat nog geen plaatje op een plank."
+    : `Nog niet op een plank: ${names.join(", ")}.`),
   digits_missing: (names) => `Geef een plaats aan ${names.join(", ")}.`,
   missing_heading: "Er ontbreekt iets",
   next: "Verder",

@@ -54,13 +54,14 @@ function patches(strings, count) {
 }
 
 /// How to do it. `begin()` shows the first page, `count(seen)` keeps the number of patches told apart.
-export function instruction_view({ texts, strings, begin, count }) {
+export function instruction_view({ texts, strings, code, begin, count }) {
   const steps = strings.how_steps(texts.labels.most, texts.labels.least);
   return h("article", { class: "card" },
     h("h1", { tabindex: "-1" }, strings.how_heading),
     h("ol", { class: "how" }, steps.map(([name, text]) => h("li", {}, h("h2", {}, name), h("p", {}, text)))),
     h("p", { class: "small" }, strings.how_ways),
     patches(strings, count),
+    h("p", { class: "small" }, `${strings.withdrawal}: `, h("code", {}, code), `. ${strings.withdrawal_text}`),
     h("div", { class: "actions" }, h("button", { type: "button", class: "primary", on: { click: begin } }, strings.begin)));
 }
 
