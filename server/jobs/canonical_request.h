@@ -58,6 +58,4 @@ nlohmann::json request_from_text(const std::vector<std::pair<std::string, std::s
 /// commas, JSON, or a word.
 void add_light_override(nlohmann::json& request, const std::string& path, const std::string& value);
 
-nlohmann::json parameters_to_json(const ParameterValues& values);
-
 }  // namespace penumbra::server

@@ -1,0 +1,247 @@
+#include "server/jobs/canonical_request.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "renderer/error.h"
+#include "renderer/frame/common_parameters.h"
+#include "renderer/technique.h"
+#include "scenes/library.h"
+#include "server/jobs/digest.h"
+#include "server/jobs/request_scene.h"
+#include "techniques/parameter_schema.h"
+
+namespace penumbra::server {
+namespace {
+
+using nlohmann::json;
+
+/// Largest integer that every JSON reader keeps exactly.
+constexpr std::uint64_t max_seed = (1ull << 53) - 1;
+constexpr std::size_t max_name = 4096;  // characters: scene names may be paths
+
+std::string shown(const json& value) {
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+/// Reads what a request says, key by key; what nobody asked for is an error.
+class Reader {
+ public:
+  explicit Reader(const json& request) : request_(request) {
+    if (!request.is_object())
+      throw bad_value("", "a request is a JSON object, this is " + std::string(request.type_name()));
+  }
+
+  std::string text(const std::string& key, const std::string& fallback, bool required = false) {
+    const json* value = find(key);
+    if (!value || (value->is_null() && !required)) {
+      if (required) throw bad_value(key, "\"" + key + "\" is missing");
+      return fallback;
+    }
+    if (!value->is_string()) throw bad_value(key, key + " must be a text, not " + shown(*value));
+    std::string text = value->get<std::string>();
+    if (text.size() > max_name || text.find('\0') != std::string::npos)
+      throw bad_value(key, key + " is too long or holds a zero character");
+    if (required && text.empty()) throw bad_value(key, key + " is empty");
+    return text;
+  }
+
+  std::uint64_t integer(const std::string& key, std::uint64_t fallback, std::uint64_t low,
+                        std::uint64_t high) {
+    const json* value = find(key);
+    if (!value || value->is_null()) return fallback;
+    const std::string allowed =
+        key + " must be an integer from " + std::to_string(low) + " to " + std::to_string(high);
+    std::uint64_t number = 0;
+    if (value->is_number_unsigned()) {
+      number = value->get<std::uint64_t>();
+    } else if (value->is_number_float()) {
+      const double real = value->get<double>();
+      if (!(real >= 0.0 && real <= 0x1p53) || real != std::floor(real))
+        throw bad_value(key, allowed + ", not " + shown(*value));
+      number = static_cast<std::uint64_t>(real);
+    } else {
+      throw bad_value(key, allowed + ", not " + shown(*value));
+    }
+    if (number < low || number > high) throw bad_value(key, allowed + ", not " + shown(*value));
+    return number;
+  }
+
+  bool boolean(const std::string& key, bool fallback) {
+    const json* value = find(key);
+    if (!value || value->is_null()) return fallback;
+    if (!value->is_boolean())
+      throw bad_value(key, key + " must be true or false, not " + shown(*value));
+    return value->get<bool>();
+  }
+
+  json object(const std::string& key) {
+    const json* value = find(key);
+    if (!value || value->is_null()) return json::object();
+    if (!value->is_object()) throw bad_value(key, key + " must be an object, not " + shown(*value));
+    return *value;
+  }
+
+  void finish() const {
+    for (const auto& [key, value] : request_.items()) {
+      if (asked_.contains(key)) continue;
+      std::string known;
+      for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+      throw bad_value(key, "unknown key \"" + key + "\"; a request has " + known);
+    }
+  }
+
+ private:
+  const json* find(const std::string& key) {
+    asked_.insert(key);
+    const auto found = request_.find(key);
+    return found == request_.end() ? nullptr : &*found;
+  }
+
+  const json& request_;
+  std::set<std::string> asked_;
+};
+
+/// 1 and 1.0 are one number: one picture has one id.
+json with_real_numbers(const json& value) {
+  if (value.is_number_integer()) return value.get<double>();
+  if (!value.is_structured()) return value;
+  json copy = value;
+  for (auto& entry : copy) entry = with_real_numbers(entry);
+  return copy;
+}
+
+std::uint64_t supersampling_of(Reader& reader, std::uint64_t fallback) {
+  const auto& allowed = RenderLimits::supersampling;
+  const std::uint64_t value = reader.integer("supersampling", fallback, allowed.front(), allowed.back());
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
+    std::string list;
+    for (const auto choice : allowed) list += (list.empty() ? "" : ", ") + std::to_string(choice);
+    throw bad_value("supersampling", "supersampling must be one of " + list + ", not " +
+                                         std::to_string(value));
+  }
+  return value;
+}
+
+void check_diagnostic(const TechniqueDescription& technique, const std::string& name) {
+  if (name.empty()) return;
+  std::string known;
+  for (const Diagnostic& diagnostic : technique.diagnostics) {
+    if (diagnostic.name == name) return;
+    known += (known.empty() ? "" : ", ") + diagnostic.name;
+  }
+  throw bad_value("diagnostic", technique.id + " has no diagnostic picture \"" + name + "\"; it has " +
+                                    (known.empty() ? "none" : known));
+}
+
+/// Overrides of lights that the scene has and accepts; nothing where nothing is replaced.
+json checked_lights(const Scene& scene, json lights) {
+  for (auto entry = lights.begin(); entry != lights.end();) {
+    if (entry->is_object() && entry->empty()) {
+      entry = lights.erase(entry);
+    } else {
+      ++entry;
+    }
+  }
+  if (!lights.empty()) scenes::with_light_overrides(scene, lights);
+  return with_real_numbers(lights);
+}
+
+void identify(CanonicalRequest& canonical) {
+  canonical.id = sha256(canonical.request.dump()).substr(0, 32);
+}
+
+const TechniqueDescription& truth() {
+  for (const TechniqueDescription& technique : techniques::all())
+    if (technique.family == "truth") return technique;
+  throw unsupported("this program has no technique of family truth: nothing can be measured");
+}
+
+}  // namespace
+
+CanonicalRequest read_request(const json& request, const RequestContext& context) {
+  const RenderRequest defaults;
+  Reader reader(request);
+  CanonicalRequest canonical;
+  json& out = canonical.request;
+  out = json::object();
+
+  // Cheap checks of plain values go first: nothing is loaded for a request that cannot be.
+  out["scene"] = reader.text("scene", "", true);
+  const std::string technique = reader.text("technique", "", true);
+  const json parameters = reader.object("parameters");
+  out["width"] = reader.integer("width", defaults.width, 1, RenderLimits::max_size);
+  out["height"] = reader.integer("height", defaults.height, 1, RenderLimits::max_size);
+  const std::string camera = reader.text("camera", "");
+  out["supersampling"] = supersampling_of(reader, defaults.supersampling);
+  out["light_samples"] = reader.integer("light_samples", defaults.light_samples, 1,
+                                        RenderLimits::max_light_samples);
+  const json lights = reader.object("lights");
+  out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
+  out["diagnostic"] = reader.text("diagnostic", "");
+  canonical.measure = reader.boolean("measure", false);
+  canonical.frames =
+      static_cast<std::uint32_t>(reader.integer("frames", 0, 1, RenderLimits::max_frames));
+  reader.finish();
+
+  canonical.technique = techniques::resolve(technique, techniques::values_from_json(parameters));
+  out["technique"] = canonical.technique.technique->id;
+  out["parameters"] = techniques::values_to_json(canonical.technique.parameters);
+  check_diagnostic(*canonical.technique.technique, out["diagnostic"]);
+  if (canonical.measure && out["diagnostic"] != "")
+    throw bad_value("diagnostic", "a diagnostic picture has no error to measure");
+
+  const HashedScene scene = load_request_scene(out["scene"], context);
+  canonical.scene = scene.scene;
+  out["scene_hash"] = scene.hash;
+  out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, camera)).name;
+  out["lights"] = checked_lights(*scene.scene, lights);
+  out["device"] = context.device;
+  out["renderer"] = renderer_version();
+  identify(canonical);
+  return canonical;
+}
+
+CanonicalRequest reference_of(const CanonicalRequest& request, const RequestContext& context) {
+  const TechniqueDescription& reference = truth();
+  ParameterValues parameters;
+  for (const Parameter& common : common_parameters())
+    parameters[common.name] = request.technique.parameters.at(common.name);
+
+  CanonicalRequest canonical;
+  canonical.scene = request.scene;
+  canonical.technique = techniques::resolve(reference.id, parameters);
+  canonical.request = request.request;
+  canonical.request["technique"] = reference.id;
+  canonical.request["parameters"] = techniques::values_to_json(canonical.technique.parameters);
+  canonical.request["seed"] = RenderRequest{}.seed;
+  canonical.request["diagnostic"] = "";
+  canonical.request["device"] = context.device;
+  identify(canonical);
+  return canonical;
+}
+
+RenderRequest to_render_request(const CanonicalRequest& canonical) {
+  const json& from = canonical.request;
+  RenderRequest request;
+  request.scene = canonical.scene;
+  if (!from.at("lights").empty())
+    request.scene = std::make_shared<const Scene>(
+        scenes::with_light_overrides(*canonical.scene, from.at("lights")));
+  request.camera = from.at("camera");
+  request.technique = canonical.technique.technique;
+  request.parameters = canonical.technique.parameters;
+  request.width = from.at("width");
+  request.height = from.at("height");
+  request.supersampling = from.at("supersampling");
+  request.light_samples = from.at("light_samples");
+  request.seed = from.at("seed");
+  request.diagnostic = from.at("diagnostic");
+  return request;
+}
+
+}  // namespace penumbra::server

@@ -1,0 +1,49 @@
+#include "server/jobs/catalogue.h"
+
+#include "renderer/technique.h"
+#include "scenes/library.h"
+#include "server/jobs/request_scene.h"
+#include "techniques/parameter_schema.h"
+#include "techniques/registry.h"
+
+namespace penumbra::server {
+using nlohmann::json;
+
+json scene_catalogue(const std::filesystem::path& data) {
+  json list = json::array();
+  for (const scenes::SceneInfo& info : scenes::built_in())
+    list.push_back({{"id", info.id},
+                    {"title", info.title},
+                    {"description", info.description},
+                    {"built_in", true}});
+  for (const std::string& id : imported_scenes(data))
+    list.push_back({{"id", id}, {"title", id}, {"description", "imported"}, {"built_in", false}});
+  return {{"scenes", list}};
+}
+
+json technique_catalogue() {
+  json list = json::array();
+  for (const TechniqueDescription& technique : techniques::all()) {
+    json diagnostics = json::array();
+    for (const Diagnostic& diagnostic : technique.diagnostics)
+      diagnostics.push_back({{"name", diagnostic.name}, {"meaning", diagnostic.meaning}});
+    list.push_back({{"id", technique.id},
+                    {"label", technique.label},
+                    {"title", technique.title},
+                    {"family", technique.family},
+                    {"source", technique.source},
+                    {"parameters", techniques::parameter_schema(technique.parameters)},
+                    {"diagnostics", diagnostics}});
+  }
+  json presets = json::array();
+  for (const techniques::Preset& preset : techniques::presets())
+    presets.push_back({{"id", preset.id},
+                       {"technique", preset.technique},
+                       {"label", preset.label},
+                       {"title", preset.title},
+                       {"source", preset.source},
+                       {"parameters", techniques::values_to_json(preset.parameters)}});
+  return {{"techniques", list}, {"presets", presets}};
+}
+
+}  // namespace penumbra::server

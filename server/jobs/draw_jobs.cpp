@@ -1,0 +1,207 @@
+// The workers' side of the render service: a thread per worker takes jobs and sees them through.
+#include "renderer/error.h"
+#include "server/jobs/queued_render_service.h"
+
+namespace penumbra::server {
+namespace {
+
+using nlohmann::json;
+
+/// Share of a measurement's bar that the reference takes where it must be drawn first.
+constexpr double reference_part = 0.6;
+
+Message task_message(const CanonicalRequest& request, const std::set<std::string>& wants) {
+  Message message;
+  message.body["task"] = {{"request", request.request},
+                          {"id", request.id},
+                          {"wants", wants},
+                          {"frames", request.frames}};
+  return message;
+}
+
+}  // namespace
+
+void QueuedRenderService::work() {
+  Crewman worker;
+  Lock lock(mutex_);
+  while (!stopping_) {
+    // A worker stands ready before there is work: the first picture need not wait for the driver.
+    if (!worker || !worker->alive()) {
+      worker.reset();
+      worker = hire(lock);
+      if (!worker) continue;
+    }
+    std::shared_ptr<Job> job = queue_.take();
+    if (!job) {
+      changed_.wait(lock);
+      continue;
+    }
+    lock.unlock();
+    execute(job, worker);
+    lock.lock();
+  }
+  lock.unlock();
+  if (worker) crew_.ended();
+}
+
+QueuedRenderService::Crewman QueuedRenderService::hire(Lock& lock) {
+  lock.unlock();
+  Crewman worker = crew_.start();
+  const std::string trouble = worker ? "" : crew_.trouble();
+  lock.lock();
+  // Whoever waits learns now that nothing will come of it for a while.
+  if (!trouble.empty() && queue_.running() == 0) end_waiting(device_error(trouble));
+  return worker;
+}
+
+void QueuedRenderService::execute(const std::shared_ptr<Job>& job, Crewman& worker) {
+  std::set<std::string> wants;
+  {
+    const Lock lock(mutex_);
+    job->record.status = "running";
+    job->record.device = worker->device();
+    wants = job->wants;
+    changed_.notify_all();
+  }
+  try {
+    draw(*job, missing(job->request.id, wants, job->request.frames), worker);
+    finish(job, wants, "done", nullptr);
+  } catch (const WorkCancelled&) {
+    finish(job, wants, "cancelled", nullptr);
+  } catch (const Error& error) {
+    finish(job, wants, "failed",
+           {{"code", error.code}, {"message", error.what()}, {"field", error.field}});
+  } catch (const std::exception& error) {
+    finish(job, wants, "failed", {{"code", "internal"}, {"message", error.what()}, {"field", ""}});
+  }
+}
+
+void QueuedRenderService::draw(Job& job, const std::set<std::string>& wants, Crewman& worker) {
+  if (wants.empty()) return;  // another has drawn it meanwhile
+  double from = 0.0;
+  Message task = task_message(job.request, wants);
+  if (needs_reference(wants)) {
+    ReferencePictures reference = reference_for(job, worker);
+    task.body["reference"] = {{"id", reference.id}, {"noise_rms_y", reference.noise_rms_y}};
+    task.blobs = {{want::image, std::move(reference.image)},
+                  {want::visibility, std::move(reference.visibility)}};
+    from = reference_part;
+  }
+  const Message result = run(job, task, worker, from, 1.0);
+  keep(job.request, worker->device(), result);
+}
+
+ReferencePictures QueuedRenderService::reference_for(Job& job, Crewman& worker) {
+  const CanonicalRequest request = reference_of(job.request, context_);
+  const std::set<std::string> wants{want::image, want::visibility, want::noise};
+  // The first look may find damaged files; the second then draws them anew.
+  for (int look = 0; look < 2; ++look) {
+    if (const auto lacking = missing(request.id, wants, 0); !lacking.empty())
+      keep(request, worker->device(),
+           run(job, task_message(request, lacking), worker, 0.0, reference_part));
+    const auto image = store_.read(request.id, want::image);
+    const auto visibility = store_.read(request.id, want::visibility);
+    const json record = store_.find(request.id);
+    if (image && visibility && !record.is_null())
+      return {request.id, *image, *visibility, record.value("noise_rms_y", json(nullptr))};
+  }
+  throw Error("internal", "the reference was drawn but could not be kept: is the disk full?");
+}
+
+/// Runs a task, once more on a new worker where the first died at it.
+Message QueuedRenderService::run(Job& job, const Message& task, Crewman& worker, double from,
+                                 double to) {
+  const auto progress = [&](double value) {
+    const Lock lock(mutex_);
+    job.record.progress = from + (to - from) * value;
+    changed_.notify_all();
+  };
+  const auto cancelled = [&] {
+    const Lock lock(mutex_);
+    return job.cancelled;
+  };
+  std::string why;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (!worker || !worker->alive()) {
+      worker.reset();
+      worker = crew_.start();
+      if (!worker) {
+        why = crew_.trouble();
+        break;
+      }
+    }
+    try {
+      Message result = worker->run(task, options_.deadline_s, progress, cancelled);
+      crew_.succeeded();
+      const Lock lock(mutex_);
+      ++counters_["rendered"];
+      return result;
+    } catch (const WorkerLost& lost) {
+      crew_.ended();
+      crew_.failed(lost.what());
+      why = lost.what();
+    } catch (const WorkCancelled&) {
+      crew_.ended();
+      throw;
+    } catch (const Error& error) {
+      if (worker->alive()) throw;  // the request is at fault, the worker is fine
+      crew_.ended();
+      if (error.code != "device") throw;
+      crew_.failed(error.what());
+      why = error.what();
+    }
+    const Lock lock(mutex_);
+    ++counters_["retries"];
+  }
+  throw device_error("the renderer failed twice at this picture: " + why);
+}
+
+void QueuedRenderService::keep(const CanonicalRequest& request, const json& device,
+                               const Message& result) {
+  const json& done = result.body.at("done");
+  json record = store_.find(request.id);
+  if (record.is_null())
+    record = {{"request", request.request}, {"cost", nullptr}, {"quality", nullptr},
+              {"notes", json::array()}};
+  record["device"] = device;
+  const bool measured = !done.at("cost").is_null() || !done.at("quality").is_null();
+  if (measured) record["notes"] = json::array();
+  for (const json& note : done.at("notes"))
+    if (std::find(record["notes"].begin(), record["notes"].end(), note) == record["notes"].end())
+      record["notes"].push_back(note);
+  for (const char* key : {"cost", "quality"})
+    if (!done.at(key).is_null()) record[key] = done.at(key);
+  if (done.contains("noise_rms_y")) record["noise_rms_y"] = done.at("noise_rms_y");
+  store_.put(request.id, record, result.blobs);
+}
+
+void QueuedRenderService::finish(const std::shared_ptr<Job>& job,
+                                 const std::set<std::string>& done, const std::string& status,
+                                 const json& error) {
+  const std::string& id = job->record.id;
+  const auto found = status == "done" ? stored(id) : std::nullopt;
+  const Lock lock(mutex_);
+  queue_.finished(*job);
+  const bool more = status == "done" && !job->cancelled &&
+                    !std::includes(done.begin(), done.end(), job->wants.begin(), job->wants.end());
+  if (more) {
+    // Somebody asked for more while it ran.
+    job->record.status = "queued";
+    job->alone = job->wants.contains(want::cost);
+    queue_.push(job);
+  } else {
+    if (found) {
+      job->record = *found;
+    } else {
+      job->record.status = status;
+      job->record.error = error;
+      remember(job->record);
+    }
+    if (status != "done") ++counters_[status];
+    if (status == "failed" && error.at("code") == "deadline") ++counters_["deadlines"];
+    jobs_.erase(id);
+  }
+  changed_.notify_all();
+}
+
+}  // namespace penumbra::server

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace penumbra::server {
+
+using Blobs = std::map<std::string, std::string>;  ///< bytes by name
+
+/// What passes between a server and its worker: one line of JSON, then the bytes that the line's
+/// key `blobs` announces: [{"name","bytes"}, ..].
+struct Message {
+  nlohmann::json body = nlohmann::json::object();
+  Blobs blobs;
+};
+
+/// Largest message that is read; pictures of 8192 x 8192 with four float channels pass.
+inline constexpr std::size_t max_message_bytes = std::size_t{2} << 30;
+
+/// Writes all of it. Throws std::system_error where the other end is gone.
+void write_message(int descriptor, const Message& message);
+
+/// Reads messages from a pipe.
+class MessageReader {
+ public:
+  explicit MessageReader(int descriptor) : descriptor_(descriptor) {}
+
+  enum class Outcome { message, closed, deadline, stopped, garbled };
+
+  /// Waits for a whole message until `deadline`; asks `stop` every few milliseconds.
+  Outcome read(Message& message, std::chrono::steady_clock::time_point deadline,
+               const std::function<bool()>& stop = {});
+
+ private:
+  bool take(Message& message);  ///< true when the buffer held a whole message
+  int descriptor_;
+  std::string buffer_;
+  std::optional<nlohmann::json> head_;  ///< of the message whose bytes are still under way
+  std::size_t awaited_ = 0;             ///< bytes of its blobs
+};
+
+}  // namespace penumbra::server

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "renderer/error.h"
+#include "server/jobs/artefact_store.h"
+#include "server/jobs/job_queue.h"
+#include "server/jobs/render_service.h"
+#include "server/jobs/task.h"
+#include "server/jobs/worker_crew.h"
+
+namespace penumbra::server {
+
+/// RenderService over an in-process queue: a thread per worker process takes jobs in order.
+class QueuedRenderService : public RenderService {
+ public:
+  explicit QueuedRenderService(const RenderServiceOptions& options);
+  ~QueuedRenderService() override;
+
+  RenderRecord submit(const nlohmann::json& request) override;
+  std::optional<RenderRecord> find(const std::string& id) override;
+  std::optional<RenderRecord> wait(const std::string& id, double seconds) override;
+  std::optional<RenderRecord> wait_change(const std::string& id, const RenderRecord& seen,
+                                          double seconds) override;
+  bool cancel(const std::string& id) override;
+  std::optional<std::string> artefact(const std::string& id, const std::string& name) override;
+  nlohmann::json statistics() override;
+  void drain(double deadline_s) override;
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  using Crewman = std::unique_ptr<WorkerProcess>;
+
+  std::set<std::string> missing(const std::string& id, const std::set<std::string>& wants,
+                                std::uint32_t frames);
+  std::optional<RenderRecord> stored(const std::string& id);
+  std::optional<RenderRecord> find_locked(const std::string& id);
+  RenderRecord enqueue(CanonicalRequest request, const std::set<std::string>& wants);
+
+  void work();
+  Crewman hire(Lock& lock);
+  void execute(const std::shared_ptr<Job>& job, Crewman& worker);
+  void draw(Job& job, const std::set<std::string>& wants, Crewman& worker);
+  ReferencePictures reference_for(Job& job, Crewman& worker);
+  Message run(Job& job, const Message& task, Crewman& worker, double from, double to);
+  void keep(const CanonicalRequest& request, const nlohmann::json& device, const Message& result);
+  void finish(const std::shared_ptr<Job>& job, const std::set<std::string>& done,
+              const std::string& status, const nlohmann::json& error);
+  void end_waiting(const Error& error);
+  void remember(const RenderRecord& record);
+
+  RenderServiceOptions options_;
+  RequestContext context_;
+  ArtefactStore store_;
+  WorkerCrew crew_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  JobQueue queue_;
+  std::map<std::string, std::shared_ptr<Job>> jobs_;  ///< waiting or running
+  std::map<std::string, RenderRecord> over_;          ///< failed and cancelled
+  std::deque<std::string> over_order_;
+  bool draining_ = false;
+  bool stopping_ = false;
+  std::map<std::string, std::uint64_t> counters_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace penumbra::server

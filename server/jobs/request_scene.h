@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/jobs/canonical_request.h"
+
+namespace penumbra::server {
+
+struct HashedScene {
+  std::shared_ptr<const Scene> scene;
+  std::string hash;  ///< scenes::content_hash
+};
+
+/// Loads the scene a request names, as the context permits. Scenes with an id are kept in memory
+/// until what they were read from changes; files named by path are read each time. Thread-safe.
+/// Throws not_found where the context does not permit paths and there is no scene of that id.
+HashedScene load_request_scene(const std::string& name, const RequestContext& context);
+
+/// Ids of the imported scenes in a data folder, sorted.
+std::vector<std::string> imported_scenes(const std::filesystem::path& data);
+
+}  // namespace penumbra::server

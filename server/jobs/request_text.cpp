@@ -1,0 +1,122 @@
+// Requests written as text: URL queries, --set and --light.
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "renderer/error.h"
+#include "server/jobs/canonical_request.h"
+
+namespace penumbra::server {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view light_prefix = "light.";
+
+enum class Kind { text, integer, boolean };
+
+/// Keys of a request that text can set; every other name is a parameter of the technique.
+const std::map<std::string, Kind>& request_keys() {
+  static const std::map<std::string, Kind> keys{
+      {"scene", Kind::text},         {"technique", Kind::text},
+      {"camera", Kind::text},        {"diagnostic", Kind::text},
+      {"width", Kind::integer},      {"height", Kind::integer},
+      {"supersampling", Kind::integer}, {"light_samples", Kind::integer},
+      {"seed", Kind::integer},       {"frames", Kind::integer},
+      {"measure", Kind::boolean}};
+  return keys;
+}
+
+std::uint64_t integer_from(const std::string& name, const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  errno = 0;
+  const std::uint64_t value = digits ? std::strtoull(text.c_str(), nullptr, 10) : 0;
+  if (!digits || errno == ERANGE)
+    throw bad_value(name, name + " must be a whole number, not \"" + text + "\"");
+  return value;
+}
+
+bool boolean_from(const std::string& name, const std::string& text) {
+  if (text == "true" || text == "1") return true;
+  if (text == "false" || text == "0") return false;
+  throw bad_value(name, name + " must be true or false, not \"" + text + "\"");
+}
+
+/// A finite number, or nothing.
+std::optional<double> number_from(const std::string& text) {
+  if (text.empty() || std::isspace(static_cast<unsigned char>(text.front()))) return {};
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(value)) return {};
+  return value;
+}
+
+/// "1,2,3" as numbers; empty where a part is none.
+json list_from(const std::string& text) {
+  json list = json::array();
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = number_from(text.substr(begin, end - begin));
+    if (!number) return {};
+    list.push_back(*number);
+    begin = end + 1;
+  }
+  return list;
+}
+
+json light_value(const std::string& text) {
+  if (const auto number = number_from(text)) return *number;
+  if (text.find(',') != std::string::npos)
+    if (json list = list_from(text); !list.is_null()) return list;
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() ? json(text) : value;
+}
+
+}  // namespace
+
+void add_light_override(json& request, const std::string& path, const std::string& value) {
+  const std::string field = "lights." + path;
+  const std::size_t dot = path.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == path.size())
+    throw bad_value(field, "a light is changed by NAME.key=value, as in key.intensity=2, not \"" +
+                               path + "\"");
+  // A key may lie deeper: NAME.extent.radius.
+  json* place = &request["lights"][path.substr(0, dot)];
+  std::size_t begin = dot + 1;
+  for (std::size_t end = path.find('.', begin); end != std::string::npos;
+       begin = end + 1, end = path.find('.', begin))
+    place = &(*place)[path.substr(begin, end - begin)];
+  const std::string key = path.substr(begin);
+  if (place->is_structured() ? place->contains(key) : !place->is_null())
+    throw bad_value(field, field + " is given twice");
+  (*place)[key] = light_value(value);
+}
+
+json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries) {
+  json request = json::object();
+  std::set<std::string> seen;
+  for (const auto& [name, value] : entries) {
+    if (!seen.insert(name).second) throw bad_value(name, name + " is given twice");
+    if (name.starts_with(light_prefix)) {
+      add_light_override(request, name.substr(light_prefix.size()), value);
+      continue;
+    }
+    const auto key = request_keys().find(name);
+    if (key == request_keys().end()) {
+      request["parameters"][name] = value;
+    } else if (key->second == Kind::integer) {
+      request[name] = integer_from(name, value);
+    } else if (key->second == Kind::boolean) {
+      request[name] = boolean_from(name, value);
+    } else {
+      request[name] = value;
+    }
+  }
+  return request;
+}
+
+}  // namespace penumbra::server

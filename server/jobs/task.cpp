@@ -1,0 +1,200 @@
+#include "server/jobs/task.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/error.h"
+#include "renderer/metrics/metrics.h"
+#include "renderer/technique.h"
+#include "scenes/picture_io.h"
+#include "server/jobs/device_lock.h"
+
+namespace penumbra::server {
+namespace {
+
+using nlohmann::json;
+
+/// How long one who draws waits for another's measurement, and how long one who measures waits for
+/// the others to finish their pictures, seconds.
+constexpr double draw_patience_s = 30.0;
+constexpr double measure_patience_s = 20.0;
+
+/// Timing that nobody gave a number of frames for takes about this long at most, milliseconds.
+constexpr double timing_budget_ms = 20000.0;
+constexpr std::uint32_t fewest_frames = 1;
+
+/// The second reference for the noise estimate has this share of the first one's samples.
+constexpr std::uint32_t noise_share = 4;
+
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+std::uint32_t frames_to_time(const CanonicalRequest& request, const Cost& first,
+                             std::vector<std::string>& notes) {
+  if (request.frames > 0) return request.frames;
+  const double frame_ms = std::max(first.wall_median_ms, first.median_ms);
+  // One uncounted frame goes before the counted ones.
+  const double affordable = frame_ms > 0.0 ? timing_budget_ms / frame_ms - 1.0 : default_frames;
+  const auto frames = static_cast<std::uint32_t>(
+      std::clamp(affordable, double{fewest_frames}, double{default_frames}));
+  if (frames < default_frames)
+    notes.push_back("timed over " + std::to_string(frames) + " frames instead of " +
+                    std::to_string(default_frames) + ", since one takes " +
+                    std::to_string(static_cast<long>(frame_ms)) + " ms");
+  return frames;
+}
+
+json cost_to_json(const Cost& cost) {
+  json passes = json::array();
+  for (const PassCost& pass : cost.passes)
+    passes.push_back({{"name", pass.name},
+                      {"median_ms", pass.median_ms},
+                      {"vertices", pass.vertices},
+                      {"primitives", pass.primitives},
+                      {"vertex_invocations", pass.vertex_invocations},
+                      {"geometry_invocations", pass.geometry_invocations},
+                      {"geometry_primitives", pass.geometry_primitives},
+                      {"clipped_primitives", pass.clipped_primitives},
+                      {"fragment_invocations", pass.fragment_invocations},
+                      {"compute_invocations", pass.compute_invocations}});
+  json resources = json::array();
+  std::uint64_t bytes = 0;
+  for (const ResourceCost& resource : cost.technique_memory) {
+    resources.push_back({{"name", resource.name}, {"bytes", resource.bytes}});
+    bytes += resource.bytes;
+  }
+  return {{"frame_ms",
+           {{"median", cost.median_ms}, {"p95", cost.p95_ms}, {"frames", cost.frames}}},
+          {"wall_median_ms", cost.wall_median_ms},
+          {"create_ms", cost.create_ms},
+          {"passes", passes},
+          {"memory", {{"over_none_bytes", bytes}, {"resources", resources}}}};
+}
+
+/// Times frames while nothing else draws, or says that something did.
+json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first,
+                  const std::function<void(double)>& progress, std::vector<std::string>& notes) {
+  RenderRequest request = to_render_request(task.request);
+  request.frames = frames_to_time(task.request, first.cost, notes);
+  const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
+  if (!alone.held()) notes.push_back("measured while another render shared the device");
+  return cost_to_json(renderer.render(request, progress).cost);
+}
+
+/// SSIM needs a window of 11 x 11; smaller pictures have none.
+json ssim_or_null(const Image8& picture, const Image8& reference, std::vector<std::string>& notes) {
+  try {
+    return metrics::ssim(picture, reference);
+  } catch (const Error& error) {
+    notes.push_back(std::string("no ssim: ") + error.what());
+    return nullptr;
+  }
+}
+
+json measure_quality(const Task& task, const RenderResult& drawn, const Image8& reference,
+                     std::vector<std::string>& notes) {
+  const ImageF visibility = scenes::decode_exr(task.reference.visibility);
+  const metrics::VisibilityError error =
+      metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
+  if (task.reference.id == task.request.id) notes.push_back("this picture is the reference itself");
+  if (error.judged == 0) notes.push_back("no pixel faces a light: visibility was not judged");
+  const auto judged = [&error](double value) { return error.judged ? json(value) : json(nullptr); };
+  return {{"reference_id", task.reference.id},
+          {"reference_noise_rms_y", task.reference.noise_rms_y},
+          {"rms_y", metrics::rms_y(drawn.picture, reference)},
+          // Equal pictures have no finite ratio; JSON has no infinity.
+          {"psnr", number_or_null(metrics::psnr(drawn.picture, reference))},
+          {"ssim", ssim_or_null(drawn.picture, reference, notes)},
+          {"flip", metrics::flip(drawn.picture, reference)},
+          {"visibility_rms", judged(error.rms)},
+          {"visibility_bias", judged(error.bias)},
+          {"false_shadow", judged(error.false_shadow)},
+          {"missing_shadow", judged(error.missing_shadow)}};
+}
+
+/// Root mean square of the reference's own error, from a second one with other samples. With
+/// independent samples of variance v/N and v/(N/s) the difference has variance (1 + s) v/N. The
+/// default set converges faster than that, which makes this an upper estimate.
+json measure_noise(Renderer& renderer, const Task& task, const RenderResult& drawn,
+                   const std::function<void(double)>& progress) {
+  RenderRequest second = to_render_request(task.request);
+  if (second.light_samples < noise_share) return nullptr;
+  second.light_samples /= noise_share;
+  second.seed += 1;
+  const RenderResult other = renderer.render(second, progress);
+  return metrics::rms_y(drawn.picture, other.picture) / std::sqrt(1.0 + noise_share);
+}
+
+/// Maps the parts of a task onto one bar.
+class Parts {
+ public:
+  Parts(const std::function<void(double)>& progress, int count) : progress_(progress), count_(count) {}
+  std::function<void(double)> next() {
+    const int part = part_++;
+    return [this, part](double value) {
+      if (progress_) progress_((part + std::clamp(value, 0.0, 1.0)) / count_);
+    };
+  }
+
+ private:
+  const std::function<void(double)>& progress_;
+  int count_;
+  int part_ = 0;
+};
+
+}  // namespace
+
+const std::vector<std::string>& artefact_names() {
+  static const std::vector<std::string> names{want::image, want::linear, want::visibility,
+                                              want::error_map};
+  return names;
+}
+
+bool needs_reference(const std::set<std::string>& wants) {
+  return wants.contains(want::quality) || wants.contains(want::error_map);
+}
+
+json device_to_json(const DeviceInfo& device) {
+  return {{"name", device.name}, {"driver", device.driver}, {"type", device.type}};
+}
+
+TaskResult run_task(Renderer& renderer, const Task& task,
+                    const std::function<void(double)>& progress) {
+  const auto wanted = [&task](const char* name) { return task.wants.contains(name); };
+  Parts parts(progress, 1 + int{wanted(want::cost)} + int{wanted(want::noise)});
+
+  // Draw once with everything that the wanted files are made of.
+  RenderRequest request = to_render_request(task.request);
+  request.visibility = wanted(want::visibility) || wanted(want::quality);
+  request.linear = wanted(want::linear);
+  TaskResult result;
+  RenderResult drawn;
+  {
+    const DeviceLock drawing(DeviceLock::Mode::draw, draw_patience_s);
+    drawn = renderer.render(request, parts.next());
+  }
+  result.notes = drawn.notes;
+  if (drawn.non_finite_pixels > 0)
+    result.notes.push_back(std::to_string(drawn.non_finite_pixels) +
+                           " pixels are not finite and shown in magenta");
+
+  const Image8& shown = request.diagnostic.empty() ? drawn.picture : drawn.diagnostic;
+  if (wanted(want::image)) result.artefacts[want::image] = scenes::encode_png(shown);
+  if (wanted(want::linear)) result.artefacts[want::linear] = scenes::encode_exr(drawn.linear);
+  if (wanted(want::visibility))
+    result.artefacts[want::visibility] = scenes::encode_exr(drawn.visibility, drawn.light_names);
+
+  if (needs_reference(task.wants)) {
+    const Image8 reference = scenes::decode_picture(task.reference.image);
+    if (wanted(want::error_map))
+      result.artefacts[want::error_map] =
+          scenes::encode_png(metrics::error_map(drawn.picture, reference));
+    if (wanted(want::quality))
+      result.quality = measure_quality(task, drawn, reference, result.notes);
+  }
+  if (wanted(want::noise)) result.noise_rms_y = measure_noise(renderer, task, drawn, parts.next());
+  if (wanted(want::cost))
+    result.cost = measure_cost(renderer, task, drawn, parts.next(), result.notes);
+  return result;
+}
+
+}  // namespace penumbra::server

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace penumbra::server {
+
+struct WorkerOptions {
+  std::string device;
+  std::filesystem::path data;
+  bool validation = false;
+  /// Address space that drawing may add once the device is open, bytes; 0: as much as the machine
+  /// has memory. Drivers map far more than they use, hence counted from there.
+  std::uint64_t memory_limit = 0;
+};
+
+/// The child process that owns a Vulkan device. Protocol (message.h) on standard input and output:
+///   worker: {"hello":{"renderer","device"}}  or  {"error":{..},"fatal":true} and the end
+///   server: {"task":{"request","id","wants","frames"},"reference":{"id","noise_rms_y"}} and the
+///           reference's files
+///   worker: {"progress":0.5} ..., then {"done":{"cost","quality","noise_rms_y","notes"}} and files,
+///           or {"error":{"code","message","field"},"fatal":false}
+/// After a fatal error the worker ends by itself, without asking the driver to tidy up: that may
+/// wait for a queue that never finishes.
+int run_worker(const WorkerOptions& options);
+
+}  // namespace penumbra::server

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/jobs/message.h"
+
+namespace penumbra::server {
+
+/// The worker is gone: crashed, killed, or not speaking the protocol. Its request may be tried again.
+class WorkerLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Somebody cancelled: the worker was killed.
+class WorkCancelled : public std::runtime_error {
+ public:
+  WorkCancelled() : std::runtime_error("cancelled") {}
+};
+
+struct WorkerCommand {
+  std::vector<std::string> arguments;  ///< program first
+  std::filesystem::path driver_cache;  ///< compiled shaders of the driver; may be empty
+  double start_s = 60.0;               ///< time to open a device and say hello
+};
+
+/// One child process, killed with this object. Its thread is the one that made it: the kernel ends
+/// a worker together with the thread that started it.
+class WorkerProcess {
+ public:
+  /// Starts it and waits for its hello. Throws WorkerLost, or the Error that the worker told.
+  explicit WorkerProcess(const WorkerCommand& command);
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  const nlohmann::json& device() const { return device_; }
+
+  /// Sends a task and waits for its answer: the body under `done`, and the files. `progress` gets
+  /// 0..1; `cancelled` is asked often. Throws the worker's Error, Error `deadline` (the process is
+  /// killed), WorkCancelled (killed) or WorkerLost.
+  Message run(const Message& task, double deadline_s, const std::function<void(double)>& progress,
+              const std::function<bool()>& cancelled);
+
+  /// False once it was killed or said that it ends; make a new one then.
+  bool alive() const { return process_ > 0; }
+
+ private:
+  void kill();
+  [[noreturn]] void lost(const std::string& during);
+  Message read(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& cancelled);
+  [[noreturn]] void raise(const nlohmann::json& body);
+
+  pid_t process_ = -1;
+  int input_ = -1;   ///< to the worker
+  int output_ = -1;  ///< from the worker
+  std::unique_ptr<MessageReader> reader_;
+  nlohmann::json device_;
+};
+
+}  // namespace penumbra::server
