@@ -129,7 +129,7 @@ TEST(Parameters, WriteRealsThatReadBackEqual) {
   EXPECT_EQ(to_text(std::int64_t{-3}), "-3");
 }
 
-TEST(CommonParameters, TreatGammaAsTheSourceDoes) {
+TEST(CommonParameters, SayHowOftenColorsAreDecodedAndWhetherThePictureIsEncoded) {
   const auto treatment = [](const std::string& choice) {
     const GammaTreatment gamma =
         gamma_treatment(complete_parameters(common_parameters(), {{"gamma", choice}}));
