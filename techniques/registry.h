@@ -14,7 +14,7 @@ const std::vector<TechniqueDescription>& all();
 struct Preset {
   std::string id;
   std::string technique;
-  std::string label;   ///< abbreviation in reports
+  std::string label;  ///< abbreviation in reports
   std::string title;
   std::string source;  ///< whose settings these are
   ParameterValues parameters;
