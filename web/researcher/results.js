@@ -1,0 +1,117 @@
+// Mean ranks per scene and overall: in the columns of their subsets, as van Sambeek 2007 prints them
+// (tables 4.3 to 4.9), and with their 95% intervals.
+
+import { h, s } from "/assets/shared/dom.js";
+import { fixed, probability, significant } from "./words.js";
+
+const sets = {
+  all: "Everybody",
+  without_flagged: "Without flagged participants",
+  inverted_turned: "Inverted participants turned round",
+};
+
+/// Label of a picture id as the study file has it.
+function labels_of(study) {
+  const labels = new Map();
+  const lists = [study.document.techniques, ...study.document.pages.map((page) => page.techniques)];
+  for (const item of lists.filter(Boolean).flat()) {
+    if (typeof item === "object") labels.set(item.id ?? item.technique, item.label ?? item.id ?? item.technique);
+  }
+  return (id) => labels.get(id) ?? id;
+}
+
+const mean_of = (technique) => technique.weighted_mean_rank ?? technique.mean_rank;
+
+function subset_table(part, label, alpha) {
+  const { techniques } = part;
+  const subsets = part.subsets ?? [];
+  return h("table", { class: "subsets" },
+    h("thead", {},
+      subsets.length ? h("tr", {}, h("td", {}), h("th", { scope: "colgroup", colspan: String(subsets.length) }, "subset for α = ", String(alpha))) : null,
+      h("tr", {}, h("th", { scope: "col" }, "Technique"),
+        subsets.length ? subsets.map((_, index) => h("th", { scope: "col" }, String(index + 1)))
+          : h("th", { scope: "col" }, "mean rank"))),
+    h("tbody", {}, techniques.map((technique) => h("tr", {}, h("th", { scope: "row" }, label(technique.technique)),
+      (subsets.length ? subsets : [[technique.technique]]).map((subset) => h("td", { class: "number" },
+        subset.includes(technique.technique) ? fixed(mean_of(technique), 2) : ""))))));
+}
+
+/// Means as points and 95% intervals as bars over ranks 1 (most realistic) to the number of techniques.
+function interval_figure(part, label) {
+  const { techniques } = part;
+  const [row, left, right, top] = [30, 110, 24, 14];
+  const width = 560;
+  const height = top + row * techniques.length + 40;
+  const highest = Math.max(2, techniques.length);
+  const x = (rank) => left + ((rank - 1) / (highest - 1)) * (width - left - right);
+  const axis = top + row * techniques.length;
+  const ticks = Array.from({ length: highest }, (_, index) => index + 1);
+  const description = techniques.map((technique) => `${label(technique.technique)} ${fixed(mean_of(technique), 2)}`).join(", ");
+  return h("figure", {}, s("svg", { class: "intervals", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Mean ranks: ${description}` },
+    ticks.map((rank) => [
+      s("line", { class: "grid", x1: x(rank), x2: x(rank), y1: top, y2: axis }),
+      s("text", { class: "tick", x: x(rank), y: axis + 18 }, String(rank)),
+    ]),
+    s("text", { class: "end start", x: x(1), y: axis + 35 }, "most realistic"),
+    s("text", { class: "end", x: x(highest), y: axis + 35 }, "least realistic"),
+    techniques.map((technique, index) => {
+      const y = top + row * (index + 0.5);
+      const [low, high] = technique.ci95 ?? [NaN, NaN];
+      return [
+        s("text", { class: "name", x: left - 14, y: y + 5 }, label(technique.technique)),
+        Number.isFinite(low) && Number.isFinite(high)
+          ? s("line", { class: "bar", x1: x(Math.max(1, low)), x2: x(Math.min(highest, high)), y1: y, y2: y }) : null,
+        Number.isFinite(technique.mean_rank) ? s("circle", { class: "mean", cx: x(technique.mean_rank), cy: y, r: 5 }) : null,
+      ];
+    })), h("figcaption", { class: "small" }, "Mean ranks with 95% intervals"));
+}
+
+function test_line(part) {
+  const lines = [];
+  const { friedman, quade } = part;
+  if (Number.isFinite(friedman?.chi_square)) {
+    lines.push(`Friedman χ² = ${significant(friedman.chi_square, 4)}, df = ${friedman.df}, p = ${probability(friedman.p_value)}, Kendall's W = ${fixed(friedman.kendalls_w, 3)}.`);
+  }
+  if (Number.isFinite(quade?.f)) lines.push(`Quade F = ${significant(quade.f, 4)}, p = ${probability(quade.p_value)}.`);
+  return lines.length ? h("p", { class: "small" }, lines.join(" ")) : null;
+}
+
+function part_section(name, part, label, alpha) {
+  return h("section", { class: "card result" }, h("h3", {}, name),
+    h("p", { class: "small" }, `${part.participants} participant${part.participants === 1 ? "" : "s"}`),
+    h("div", { class: "pair" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Table: ${name}` },
+      subset_table(part, label, alpha)), interval_figure(part, label)),
+    test_line(part), part.reason ? h("p", { class: "small" }, part.reason) : null);
+}
+
+function flags_table(flags) {
+  if (!flags.length) return null;
+  return h("section", { class: "card" }, h("h3", {}, "Flags"),
+    h("p", { class: "small" }, "Reasons to look again. Nobody is left out because of them unless you choose the set without them."),
+    h("table", { class: "plain" }, h("thead", {}, h("tr", {}, ["Participant", "Flag", "Value", "Threshold"].map((name) =>
+      h("th", { scope: "col" }, name)))),
+    h("tbody", {}, flags.map((flag) => h("tr", {}, h("th", { scope: "row" }, flag.participant), h("td", {}, flag.flag.replaceAll("_", " ")),
+      h("td", { class: "number" }, significant(flag.value)), h("td", { class: "number" }, significant(flag.threshold)))))));
+}
+
+export function results_section(results, study) {
+  const alpha = study.document.analysis?.alpha ?? 0.05;
+  const label = labels_of(study);
+  const body = h("div", {});
+  const draw = (set) => {
+    const part = results.included_sets[set];
+    body.replaceChildren(...[
+      part.overall?.techniques?.length ? part_section("All scenes", part.overall, label, alpha) : null,
+      part.scenes.filter((scene) => scene.techniques.length).map((scene) => part_section(scene.scene, scene, label, alpha)),
+    ].flat().filter(Boolean));
+  };
+  const names = Object.keys(results.included_sets);
+  const choice = h("select", { id: "included", on: { change: () => draw(choice.value) } },
+    names.map((name) => h("option", { value: name }, sets[name] ?? name)));
+  if (!results.pages || !names.length) return h("p", {}, "No answers yet.");
+  draw(names[0]);
+  return h("div", {}, h("h2", {}, "Results"),
+    h("p", { class: "choose" }, h("label", { for: "included" }, "Participants"), choice),
+    h("p", { class: "small" }, "Rank 1 is most realistic. Tables show means weighted by how easy the differences were to see; techniques in one column do not differ significantly."),
+    body, flags_table(results.flags ?? []));
+}
