@@ -18,7 +18,7 @@ Scene make_boxes() {
                          b.look("white paint", {0.80f, 0.79f, 0.75f}, paint, 1.5, 0.06f, 40.0f),
                          b.look("ochre paint", {0.76f, 0.52f, 0.16f}, paint, 1.5, 0.06f, 40.0f)};
   const Look grey = b.look("grey ground", {0.80f, 0.80f, 0.80f}, b.texture("concrete", 2), 6.0);
-  b.ground({-26.0, -26.0}, {26.0, 26.0}, grey);
+  b.ground({-34.0, -34.0}, {34.0, 34.0}, grey);
 
   // Ten columns by five rows of cells, each box turned and moved within its cell: none overlaps.
   Random random(50);
@@ -33,9 +33,10 @@ Scene make_boxes() {
                         0.025, 1),
             look, "box " + std::to_string(i + 1), move({x, 0.0, z}) * turn_y(angle), 20.0);
   }
-  b.spot("lamp", {-9.0, 24.0, 7.0}, {0.0, 0.0, 0.0}, {1.0f, 0.96f, 0.89f}, 1.1f, 35.0,
-         rectangle(2.4, 2.4));
-  b.camera("main", {9.0, 12.5, 17.5}, {0.0, 0.3, 0.3}, 41.0);
+  b.spot("lamp", {-9.0, 24.0, 7.0}, {0.0, 0.0, 0.0}, {1.0f, 0.96f, 0.89f}, 1.15f, 40.0,
+         rectangle(2.4, 2.4))
+      .inner_angle = 18.0;
+  b.camera("main", {8.2, 12.6, 14.8}, {0.2, 0.0, 0.15}, 40.0);
   b.scene.ambient = {0.13f, 0.14f, 0.16f};
   return std::move(b.scene);
 }

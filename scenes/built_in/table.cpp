@@ -4,8 +4,19 @@ namespace penumbra::scenes {
 
 const std::vector<BuiltIn>& built_in_table() {
   static const std::vector<BuiltIn> table = {
+      {"car", "A car on a box", "a car on a box, two area lights close above it", make_car},
       {"boxes", "Fifty boxes on a grey plane",
        "50 boxes on a grey plane, camera further away, one area light far above", make_boxes},
+      {"disco-box", "A box under red, green and blue lights",
+       "one box, three close area lights red, green and blue", make_disco_box},
+      {"island", "An island in the sea",
+       "an island in the sea, one light so far away that penumbrae vanish", make_island},
+      {"warehouse-inside", "A warehouse from inside",
+       "hall with shelves, crates, beams and skylights, one near area light",
+       make_warehouse_inside},
+      {"warehouse-outside", "A warehouse from outside",
+       "the same hall from outside, camera and light far away and close to each other",
+       make_warehouse_outside},
       {"half-plane", "Straight edge over a plane",
        "penumbra known in closed form: 1/3 m wide, linear, under a square light", make_half_plane},
       {"three-layers", "Three plates above each other",

@@ -256,37 +256,4 @@ Solid loft(const std::vector<std::vector<glm::dvec3>>& rings) {
   return solid;
 }
 
-Solid height_field(const glm::dvec2& low, const glm::dvec2& high, int columns,
-                   const std::vector<double>& heights, double bottom) {
-  Solid solid;
-  const auto width = static_cast<std::uint32_t>(columns);
-  const auto rows = static_cast<std::uint32_t>(heights.size()) / width;
-  for (std::uint32_t z = 0; z < rows; ++z)
-    for (std::uint32_t x = 0; x < width; ++x)
-      solid.add_point({low.x + (high.x - low.x) * x / (width - 1), heights[z * width + x],
-                       low.y + (high.y - low.y) * z / (rows - 1)});
-  const auto top = [&](std::uint32_t x, std::uint32_t z) { return z * width + x; };
-  for (std::uint32_t z = 0; z + 1 < rows; ++z)
-    for (std::uint32_t x = 0; x + 1 < width; ++x)
-      solid.add_quad(top(x, z), top(x, z + 1), top(x + 1, z + 1), top(x + 1, z));
-  // The rim, counter-clockwise seen from above; the floor is a fan around one point in its middle.
-  Ring rim;
-  for (std::uint32_t z = 0; z + 1 < rows; ++z) rim.push_back(top(0, z));
-  for (std::uint32_t x = 0; x + 1 < width; ++x) rim.push_back(top(x, rows - 1));
-  for (std::uint32_t z = rows - 1; z > 0; --z) rim.push_back(top(width - 1, z));
-  for (std::uint32_t x = width - 1; x > 0; --x) rim.push_back(top(x, 0));
-  Ring floor;
-  for (const std::uint32_t point : rim) {
-    glm::dvec3 below = solid.points[point];
-    below.y = bottom;
-    floor.push_back(solid.add_point(below));
-  }
-  join(solid, floor, rim);
-  const std::uint32_t middle =
-      solid.add_point({0.5 * (low.x + high.x), bottom, 0.5 * (low.y + high.y)});
-  for (std::size_t i = 0; i < floor.size(); ++i)
-    solid.add_triangle(middle, floor[(i + 1) % floor.size()], floor[i]);
-  return solid;
-}
-
 }  // namespace penumbra::scenes

@@ -40,6 +40,18 @@ Solid extrude(const std::vector<glm::dvec2>& polygon, double depth);
 /// counter-clockwise seen from where the rings go to.
 Solid loft(const std::vector<std::vector<glm::dvec3>>& rings);
 
+/// Plate in x and y with its front at z = thickness / 2: the cells between the given lines, less
+/// the holes, each a cell {column, row}. Holes may touch along sides but not at corners only.
+Solid plate(const std::vector<double>& xs, const std::vector<double>& ys,
+            const std::vector<std::array<int, 2>>& holes, double thickness);
+
+/// Square bar between two points; `up` says where its upper side looks.
+Solid bar(const glm::dvec3& from, const glm::dvec3& to, double width, double height,
+          const glm::dvec3& up = {0.0, 1.0, 0.0});
+
+/// Sphere of radius 1 with seeded bumps, for rocks: `roughness` is the greatest change of radius.
+Solid boulder(std::uint32_t seed, double roughness, int slices, int stacks);
+
 /// Block whose upper side is a grid of heights, row by row in z (`columns` heights along x each);
 /// its lower side is flat at `bottom`.
 Solid height_field(const glm::dvec2& low, const glm::dvec2& high, int columns,

@@ -56,7 +56,7 @@ glm::dvec3 wood(double u, double v, std::uint32_t seed) {
 glm::dvec3 asphalt(double u, double v, std::uint32_t seed) {
   const double clouds = fractal_noise(u, v, 3, 3, 4, seed);
   const double stones = fractal_noise(u, v, 96, 96, 2, seed + 1);
-  return glm::dvec3(0.98, 1.0, 1.03) * (0.40 + 0.14 * (clouds - 0.5) + 0.20 * (stones - 0.5));
+  return glm::dvec3(0.98, 1.0, 1.03) * (0.46 + 0.08 * (clouds - 0.5) + 0.16 * (stones - 0.5));
 }
 
 /// Sea from above: long swells that bend short waves, light crests and deep troughs.
@@ -65,8 +65,8 @@ glm::dvec3 water(double u, double v, std::uint32_t seed) {
   const double swell = fractal_noise(u + bend, v + 2.0 * bend, 4, 9, 4, seed + 1);
   const double ripple = fractal_noise(u - bend, v + bend, 14, 30, 3, seed + 2);
   const double height = 0.62 * swell + 0.38 * ripple;
-  glm::dvec3 color = glm::mix(rgb(0x17556e), rgb(0x3b93a6), smooth_step(0.28, 0.66, height));
-  return glm::mix(color, rgb(0xa9d6d8), 0.8 * smooth_step(0.60, 0.74, height));
+  glm::dvec3 color = glm::mix(rgb(0x1d5f78), rgb(0x3a8ea3), smooth_step(0.30, 0.70, height));
+  return glm::mix(color, rgb(0xa9d6d8), 0.5 * smooth_step(0.58, 0.78, height));
 }
 
 glm::dvec3 sand(double u, double v, std::uint32_t seed) {
