@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/image.h"
+
+namespace penumbra::scenes {
+
+/// Pictures as files and as bytes. Encoded bytes depend on the pixels alone: no text, no time.
+
+/// PNG of 1 to 4 channels, 8 bits, sRGB-encoded; compressed for speed.
+std::string encode_png(const Image8& picture);
+
+/// EXR of 32-bit float channels. Names are R, G, B, A (or Y) where none are given; else one per
+/// channel, each different. Channels come back in the picture's order.
+std::string encode_exr(const ImageF& picture, const std::vector<std::string>& channels = {});
+
+/// By the file's extension: .png, .jpg (quality 95, alpha dropped) or .tif.
+/// Throws bad_value (field "out") for another extension or where the file cannot be written.
+void write_picture(const std::filesystem::path& file, const Image8& picture);
+
+/// .exr, channels as encode_exr.
+void write_picture(const std::filesystem::path& file, const ImageF& picture,
+                   const std::vector<std::string>& channels = {});
+
+/// PNG, JPEG or TIFF, told by its first bytes, as RGBA. Throws unreadable, also for more than 16384
+/// pixels along a side or 2^27 in all, before anything is allocated.
+Image8 decode_picture(std::string_view bytes);
+
+/// As decode_picture; throws not_found where there is no such file, unreadable naming the file.
+Image8 read_picture(const std::filesystem::path& file);
+
+/// EXR written by encode_exr; `channels`, where given, receives the names.
+ImageF decode_exr(std::string_view bytes, std::vector<std::string>* channels = nullptr);
+
+}  // namespace penumbra::scenes
