@@ -111,8 +111,9 @@ class Renderer {
 
   const DeviceInfo& device() const;
 
+  struct State;  ///< the implementation's own
+
  private:
-  struct State;
   std::unique_ptr<State> state;
 };
 

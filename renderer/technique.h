@@ -2,16 +2,20 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "renderer/embedded_file.h"
 #include "renderer/parameters.h"
 #include "renderer/scene/scene.h"
 
 namespace penumbra {
 
 class PrepareContext;  // renderer/frame/prepare_context.h: what a technique may use while it draws
-class Bindings;        // renderer/vulkan/pipeline.h: shader resources by name
+namespace vulkan {
+class Bindings;  // renderer/vulkan/pipeline.h: shader resources by name
+}
 
 /// What is known of a light's task before anything is allocated.
 struct TechniqueInput {
@@ -49,7 +53,7 @@ class Technique {
   virtual void prepare(PrepareContext& context) = 0;
 
   /// Names the resources that the GLSL reads; checked both ways against reflection.
-  virtual void bind(Bindings& bindings) const = 0;
+  virtual void bind(vulkan::Bindings& bindings) const = 0;
 };
 
 struct Diagnostic {
@@ -67,6 +71,7 @@ struct TechniqueDescription {
   std::vector<Parameter> parameters;
   std::vector<Diagnostic> diagnostics;  ///< pictures by name, from `vec4 draw_diagnostic_<name>`
   std::string shader;                   ///< path of the GLSL that defines calculate_shadow
+  std::span<const EmbeddedFile> files;  ///< all techniques' shaders; filled in by the registry
   std::function<std::unique_ptr<Technique>()> create;
 };
 

@@ -40,7 +40,11 @@ std::string known_ids() {
 }  // namespace
 
 const std::vector<TechniqueDescription>& all() {
-  static const std::vector<TechniqueDescription> list = finish_descriptions(generated_list());
+  static const std::vector<TechniqueDescription> list = [] {
+    auto described = finish_descriptions(generated_list());
+    for (TechniqueDescription& technique : described) technique.files = embedded_files();
+    return described;
+  }();
   return list;
 }
 

@@ -17,20 +17,22 @@ std::int64_t integer_value(const Parameter& parameter, const ParameterValues& va
   if (parameter.type == ParameterType::boolean) return boolean_of(values, parameter.name) ? 1 : 0;
   if (parameter.type == ParameterType::integer) return integer_of(values, parameter.name);
   const auto& choices = parameter.choices;
-  return std::find(choices.begin(), choices.end(), choice_of(values, parameter.name)) - choices.begin();
+  return std::find(choices.begin(), choices.end(), choice_of(values, parameter.name)) -
+         choices.begin();
 }
 
 }  // namespace
 
-std::string parameter_declarations(const std::vector<Parameter>& declared, const ParameterValues& values) {
+std::string parameter_declarations(const std::vector<Parameter>& declared,
+                                   const ParameterValues& values) {
   std::ostringstream constants;
   std::ostringstream members;
   for (const Parameter& parameter : declared) {
     const bool real = parameter.type == ParameterType::real;
     const std::string name = "parameter_" + identifier(parameter.name);
     for (std::size_t i = 0; i < parameter.choices.size(); ++i)
-      constants << "const int " << identifier(parameter.name) << '_' << identifier(parameter.choices[i])
-                << " = " << i << ";\n";
+      constants << "const int " << identifier(parameter.name) << '_'
+                << identifier(parameter.choices[i]) << " = " << i << ";\n";
     if (!parameter.variant) {
       members << "  " << (real ? "float " : "int ") << name << ";\n";
     } else if (real) {
@@ -41,7 +43,8 @@ std::string parameter_declarations(const std::vector<Parameter>& declared, const
     }
   }
   std::string text = constants.str();
-  if (!members.str().empty()) text += "layout(std430) readonly buffer ParameterBlock {\n" + members.str() + "};\n";
+  if (!members.str().empty())
+    text += "layout(std430) readonly buffer ParameterBlock {\n" + members.str() + "};\n";
   return text;
 }
 
@@ -51,7 +54,8 @@ std::vector<std::uint32_t> parameter_block(const std::vector<Parameter>& declare
   for (const Parameter& parameter : declared) {
     if (parameter.variant) continue;
     if (parameter.type == ParameterType::real)
-      words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(real_of(values, parameter.name))));
+      words.push_back(
+          std::bit_cast<std::uint32_t>(static_cast<float>(real_of(values, parameter.name))));
     else
       words.push_back(static_cast<std::uint32_t>(integer_value(parameter, values)));
   }

@@ -10,7 +10,8 @@ namespace penumbra {
 /// GLSL that declares `parameter_<name>` for every parameter: compile-time constants for variants,
 /// members of a uniform block "ParameterBlock" for the others, and `<name>_<choice>` constants for
 /// choices. Booleans are int 0 or 1.
-std::string parameter_declarations(const std::vector<Parameter>& declared, const ParameterValues& values);
+std::string parameter_declarations(const std::vector<Parameter>& declared,
+                                   const ParameterValues& values);
 
 /// Content of ParameterBlock, 4 bytes a member in std430-compatible order, padded to 16 bytes.
 std::vector<std::uint32_t> parameter_block(const std::vector<Parameter>& declared,

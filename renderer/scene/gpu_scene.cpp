@@ -23,23 +23,15 @@ constexpr std::uint32_t white = 0xffffffffu;
 
 }  // namespace
 
-std::uint32_t pack_unit_vector(const glm::vec3& normal) {
-  const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-  glm::vec2 p = sum > 0.0f ? glm::vec2(normal) / sum : glm::vec2(0.0f);
-  if (normal.z < 0.0f)
-    p = (1.0f - glm::abs(glm::vec2(p.y, p.x))) *
-        glm::vec2(p.x >= 0.0f ? 1.0f : -1.0f, p.y >= 0.0f ? 1.0f : -1.0f);
-  return glm::packSnorm2x16(p);
-}
-
 vulkan::Buffer upload(vulkan::Device& device, vulkan::MemoryLedger& ledger, const std::string& name,
                       const void* data, std::size_t bytes, VkBufferUsageFlags usage) {
-  const std::size_t size = std::max<std::size_t>(bytes, 16);  // an empty scene still binds something
+  const std::size_t size =
+      std::max<std::size_t>(bytes, 16);  // an empty scene still binds something
   vulkan::Buffer buffer(device, ledger, name, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   if (bytes == 0) return buffer;
   vulkan::MemoryLedger passing;
-  const vulkan::Buffer staging(device, passing, name + " staging", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                               vulkan::MemoryKind::upload);
+  const vulkan::Buffer staging(device, passing, name + " staging", bytes,
+                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vulkan::MemoryKind::upload);
   std::memcpy(staging.mapped(), data, bytes);
   vulkan::run_now(device, [&](VkCommandBuffer commands) {
     const VkBufferCopy copy{0, 0, bytes};
@@ -48,14 +40,16 @@ vulkan::Buffer upload(vulkan::Device& device, vulkan::MemoryLedger& ledger, cons
   return buffer;
 }
 
-vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledger, const Texture& texture) {
+vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledger,
+                             const Texture& texture) {
   vulkan::ImageDescription description;
   description.format = VK_FORMAT_R8G8B8A8_SRGB;
   description.width = texture.width;
   description.height = texture.height;
-  description.levels = static_cast<std::uint32_t>(std::bit_width(std::max(texture.width, texture.height)));
-  description.usage =
-      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  description.levels =
+      static_cast<std::uint32_t>(std::bit_width(std::max(texture.width, texture.height)));
+  description.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   vulkan::Image image(device, ledger, "texture " + texture.name, description);
   vulkan::MemoryLedger passing;
   const vulkan::Buffer staging(device, passing, "texture staging", texture.rgba.size(),
@@ -65,7 +59,8 @@ vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledge
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     copy.imageExtent = {texture.width, texture.height, 1};
-    vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1,
+                           &copy);
     auto extent = [&](std::uint32_t level) {
       return VkOffset3D{static_cast<std::int32_t>(std::max(1u, texture.width >> level)),
                         static_cast<std::int32_t>(std::max(1u, texture.height >> level)), 1};
@@ -84,28 +79,20 @@ vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledge
   return image;
 }
 
-GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)) {
   const Bounds bounds = world_bounds(*scene_);
   // A whole number of metres keeps built-in coordinates exact after the move.
   if (!bounds.empty()) origin_ = glm::round(bounds.center());
   flatten();
-  constexpr VkBufferUsageFlags vertex = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  constexpr VkBufferUsageFlags vertex =
+      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
-  std::vector<std::uint32_t> facets(index_list_.size() / 3);
-  for (std::size_t t = 0; t < facets.size(); ++t) {
-    const glm::vec3 a = position_list_[index_list_[3 * t]];
-    const glm::vec3 b = position_list_[index_list_[3 * t + 1]];
-    const glm::vec3 c = position_list_[index_list_[3 * t + 2]];
-    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-    const double length = glm::length(normal);
-    facets[t] = pack_unit_vector(length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f, 1.0f, 0.0f));
-  }
-  positions_ = upload(device, ledger_, "positions", position_list_.data(), position_list_.size() * 12, vertex);
-  surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(), surface_list_.size(),
-                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  positions_ = upload(device, ledger_, "positions", position_list_.data(),
+                      position_list_.size() * 12, vertex);
+  surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(),
+                     surface_list_.size(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   indices_ = upload(device, ledger_, "indices", index_list_.data(), index_list_.size() * 4, index);
-  facets_ = upload(device, ledger_, "facet normals", facets.data(), facets.size() * 4,
-                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   surface_list_ = {};
   upload_materials(device);
 }
@@ -137,7 +124,8 @@ void GpuScene::flatten() {
       const glm::dvec3 normal = normal_matrix * glm::dvec3(mesh.normals[v]);
       const double length = glm::length(normal);
       SurfaceVertex& out = surfaces[position_list_.size()];
-      out.normal = length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : mesh.normals[v];
+      out.normal =
+          length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : mesh.normals[v];
       out.uv = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[v];
       out.color = mesh.colors.empty() ? white : glm::packUnorm4x8(mesh.colors[v]);
       position_list_.push_back(glm::vec3(world_from_object * glm::dvec4(mesh.positions[v], 1.0)));
@@ -165,7 +153,8 @@ void GpuScene::flatten() {
     for (std::uint32_t i = 0; i < primitive.index_count; ++i) {
       const std::uint32_t corner = i % 3;
       const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
-      const std::uint32_t index = first_vertex[part.instance] + mesh.indices[primitive.first_index + turned];
+      const std::uint32_t index =
+          first_vertex[part.instance] + mesh.indices[primitive.first_index + turned];
       index_list_.push_back(index);
       range.low = glm::min(range.low, position_list_[index]);
       range.high = glm::max(range.high, position_list_[index]);
@@ -194,7 +183,8 @@ void GpuScene::upload_materials(vulkan::Device& device) {
   }
   materials_ = upload(device, ledger_, "materials", list.data(), list.size() * sizeof(list[0]),
                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  for (const Texture& texture : scene_->textures) textures_.push_back(upload_texture(device, ledger_, texture));
+  for (const Texture& texture : scene_->textures)
+    textures_.push_back(upload_texture(device, ledger_, texture));
   textures_.push_back(upload_texture(device, ledger_, {"white", 1, 1, {255, 255, 255, 255}}));
 }
 

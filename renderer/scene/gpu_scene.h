@@ -15,7 +15,7 @@ struct DrawRange {
   std::uint32_t index_count = 0;
   std::uint32_t material = 0;
   std::uint32_t instance = 0;
-  glm::vec3 low{0.0f};   ///< box, world
+  glm::vec3 low{0.0f};  ///< box, world
   glm::vec3 high{0.0f};
   bool casts_shadow = true;
   bool double_sided = false;
@@ -32,8 +32,10 @@ class GpuScene {
   const Scene& scene() const { return *scene_; }
   const std::shared_ptr<const Scene>& shared() const { return scene_; }
   glm::dvec3 origin() const { return origin_; }
-  glm::vec3 to_world(const glm::dvec3& scene_point) const { return glm::vec3(scene_point - origin_); }
-  glm::vec3 low() const { return low_; }    ///< box around everything, world
+  glm::vec3 to_world(const glm::dvec3& scene_point) const {
+    return glm::vec3(scene_point - origin_);
+  }
+  glm::vec3 low() const { return low_; }  ///< box around everything, world
   glm::vec3 high() const { return high_; }
 
   const std::vector<glm::vec3>& positions() const { return position_list_; }
@@ -43,7 +45,6 @@ class GpuScene {
   const vulkan::Buffer& position_buffer() const { return positions_; }
   const vulkan::Buffer& surface_buffer() const { return surfaces_; }
   const vulkan::Buffer& index_buffer() const { return indices_; }
-  const vulkan::Buffer& facet_buffer() const { return facets_; }
   const vulkan::Buffer& material_buffer() const { return materials_; }
   /// White where the material has no texture.
   const vulkan::Image& texture_of(std::uint32_t material) const;
@@ -61,18 +62,16 @@ class GpuScene {
   std::vector<DrawRange> ranges_;
   std::vector<std::byte> surface_list_;  ///< freed after upload
   vulkan::MemoryLedger ledger_;
-  vulkan::Buffer positions_, surfaces_, indices_, facets_, materials_;
+  vulkan::Buffer positions_, surfaces_, indices_, materials_;
   std::vector<vulkan::Image> textures_;  ///< one per scene texture, then white
 };
-
-/// Octahedral packing as geometry_buffer.glsl unpacks it.
-std::uint32_t pack_unit_vector(const glm::vec3& normal);
 
 /// Device buffer with this content, by way of a staging buffer.
 vulkan::Buffer upload(vulkan::Device& device, vulkan::MemoryLedger& ledger, const std::string& name,
                       const void* data, std::size_t bytes, VkBufferUsageFlags usage);
 
 /// sRGB texture with a full mip chain.
-vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledger, const Texture& texture);
+vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledger,
+                             const Texture& texture);
 
 }  // namespace penumbra

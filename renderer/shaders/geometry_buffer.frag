@@ -12,14 +12,12 @@ layout(location = 2) out vec4 out_radiance;
 
 layout(std430) readonly buffer MaterialBlock { MaterialData materials[]; };
 uniform sampler2D surface_texture;
-layout(std430) readonly buffer FacetBlock { uint facet_normals[]; };
-layout(push_constant) uniform DrawBlock { uint material; uint first_triangle; } draw;
+layout(push_constant) uniform DrawBlock { uint material; } draw;
 
-// Colours of textures and materials as the gamma mode decodes them.
+// Textures and materials arrive decoded once; the gamma parameter may ask for none or twice.
 vec3 decoded(vec3 linear_color) {
-  if (frame.options.x == gamma_off || frame.options.x == gamma_output_only)
-    return srgb_from_linear(linear_color);
-  if (frame.options.x == gamma_input_twice) return linear_from_srgb(linear_color);
+  if (frame.options.x == 0u) return srgb_from_linear(linear_color);
+  if (frame.options.x == 2u) return linear_from_srgb(linear_color);
   return linear_color;
 }
 
@@ -29,8 +27,9 @@ void main() {
   if (material.surface.w > 0.5) color *= texture(surface_texture, surface_uv);
   if (color.a < material.surface.z) discard;
 
-  // Both normals look towards the viewer. The facet's is exact, not a difference of pixels.
-  vec3 facet = unpack_unit_vector(facet_normals[draw.first_triangle + gl_PrimitiveID]);
+  // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it
+  // in clipped triangles. Both normals look towards the viewer.
+  vec3 facet = normalize(cross(dFdx(world_position), dFdy(world_position)));
   vec3 to_camera = frame.camera_position.w > 0.5 ? frame.camera_position.xyz - world_position
                                                  : -frame.camera_direction.xyz;
   if (dot(facet, to_camera) < 0.0) facet = -facet;

@@ -21,7 +21,7 @@ void main() {
 #endif
   bool finite = !any(isnan(color)) && !any(isinf(color));
   if (!finite) atomicAdd(non_finite_pixels, 1u);
-  bool encode = frame.options.x != gamma_off && frame.options.x != gamma_input_only;
+  bool encode = frame.options.w != 0u;
   color = clamp(color, 0.0, 1.0);
   // A value that is no number is shown as magenta, which no scene contains.
   out_encoded = vec4(finite ? (encode ? srgb_from_linear(color) : color) : vec3(1.0, 0.0, 1.0), 1.0);

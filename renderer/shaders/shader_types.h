@@ -1,7 +1,8 @@
 // Structures and constants that C++ and GLSL share: this is their only definition. Members are vec4,
 // uvec4 and mat4 only, so that std140, std430 and C++ agree on the layout.
+#ifndef PENUMBRA_SHADER_TYPES_H
+#define PENUMBRA_SHADER_TYPES_H
 #ifdef __cplusplus
-#pragma once
 #include <glm/glm.hpp>
 namespace penumbra::shader {
 using glm::mat4;
@@ -21,12 +22,6 @@ PENUMBRA_CONSTANT int light_kind_spot = 0;
 PENUMBRA_CONSTANT int light_kind_directional = 1;
 PENUMBRA_CONSTANT int light_kind_point = 2;
 
-PENUMBRA_CONSTANT int gamma_correct = 0;
-PENUMBRA_CONSTANT int gamma_off = 1;
-PENUMBRA_CONSTANT int gamma_input_only = 2;
-PENUMBRA_CONSTANT int gamma_output_only = 3;
-PENUMBRA_CONSTANT int gamma_input_twice = 4;
-
 /// Constants of a frame. World space is the scene's, moved so that its middle is the origin: offsets
 /// of 1e7 m cost no precision.
 struct FrameData {
@@ -38,7 +33,7 @@ struct FrameData {
   vec4 background_low;    // rgb linear, horizon
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
-  uvec4 options;          // x gamma mode, y frame index, z seed
+  uvec4 options;          // x times that colours are decoded, y frame index, z seed, w encodes
 };
 
 struct LightData {
@@ -57,7 +52,29 @@ struct MaterialData {
   vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
 };
 
+// Faces of a map: one for a spot or directional light, six for a point light.
+PENUMBRA_CONSTANT int max_map_faces = 6;
+
+/// One view from the light. A point x of it lies at origin + s (forward + a right + b up) when
+/// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the map
+/// (b downwards) and s the distance along `forward`.
+struct MapFace {
+  mat4 clip_from_world;
+  vec4 origin;   // xyz world, w 1 for perspective
+  vec4 right;    // xyz scaled by half the map's width at unit distance
+  vec4 up;       // xyz scaled likewise, towards growing v
+  vec4 forward;  // xyz unit
+};
+
+struct MapData {
+  MapFace faces[max_map_faces];
+  vec4 range;  // x near, y far, z 1 / (far - near), w faces
+  vec4 texel;  // x map size, y world size of a texel at unit distance, z constant bias in m, w slope scale
+  vec4 filter_size;  // x kernel radius in texels
+};
+
 #ifdef __cplusplus
 }  // namespace penumbra::shader
 #endif
 #undef PENUMBRA_CONSTANT
+#endif

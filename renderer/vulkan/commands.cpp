@@ -128,7 +128,9 @@ void Commands::begin_rendering(const RenderTargets& targets) {
   cull(VK_CULL_MODE_NONE);
 }
 
-void Commands::end_rendering() { vkCmdEndRendering(commands_); }
+void Commands::end_rendering() {
+  vkCmdEndRendering(commands_);
+}
 
 void Commands::viewport(float x, float y, float width, float height) {
   const VkViewport view{x, y, width, height, 0.0f, 1.0f};
@@ -138,10 +140,13 @@ void Commands::viewport(float x, float y, float width, float height) {
   vkCmdSetScissor(commands_, 0, 1, &scissor);
 }
 
-void Commands::cull(VkCullModeFlags mode) { vkCmdSetCullMode(commands_, mode); }
+void Commands::cull(VkCullModeFlags mode) {
+  vkCmdSetCullMode(commands_, mode);
+}
 
 void Commands::bind(const Pipeline& pipeline, const Bindings& bindings) {
-  const auto point = pipeline.compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
+  const auto point =
+      pipeline.compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
   if (bound_ != &pipeline) vkCmdBindPipeline(commands_, point, pipeline.pipeline);
   bound_ = &pipeline;
   cache_.push(commands_, pipeline, bindings);
@@ -161,7 +166,9 @@ void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   vkCmdDispatch(commands_, x, y, z);
 }
 
-void Commands::barrier() { global_barrier(commands_); }
+void Commands::barrier() {
+  global_barrier(commands_);
+}
 
 Recorder::Recorder(Device& device, PipelineCache& cache)
     : device_(device),
@@ -213,13 +220,14 @@ void Recorder::flush() {
 void Recorder::end() {
   const auto start = std::chrono::steady_clock::now();
   submit_and_wait(device_, commands_, fence_);
-  wall_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  wall_ms_ +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   collect();
 }
 
 PassRecord& Recorder::record_of(const std::string& name) {
-  const auto found =
-      std::find_if(records_.begin(), records_.end(), [&](const auto& record) { return record.name == name; });
+  const auto found = std::find_if(records_.begin(), records_.end(),
+                                  [&](const auto& record) { return record.name == name; });
   if (found != records_.end()) return *found;
   records_.push_back({});
   records_.back().name = name;
@@ -230,13 +238,14 @@ void Recorder::collect() {
   if (names_.empty()) return;
   const auto count = static_cast<std::uint32_t>(names_.size());
   std::vector<std::uint64_t> times(count + 1);
-  check(vkGetQueryPoolResults(device_.handle, timestamps_, 0, count + 1, times.size() * 8, times.data(), 8,
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  check(vkGetQueryPoolResults(device_.handle, timestamps_, 0, count + 1, times.size() * 8,
+                              times.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   std::vector<std::array<std::uint64_t, 8>> counters(count);
   if (count_statistics_)
     check(vkGetQueryPoolResults(device_.handle, statistics_, 0, count, counters.size() * 64,
-                                counters.data(), 64, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+                                counters.data(), 64,
+                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
   const double ms_per_tick = device_.properties.limits.timestampPeriod * 1e-6;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -69,12 +69,13 @@ class Commands {
 struct PassRecord {
   std::string name;
   double ms = 0.0;
-  bool counted = false;                  ///< counters below were measured
+  bool counted = false;                     ///< counters below were measured
   std::array<std::uint64_t, 8> counters{};  ///< in the order of PassCost's counts
 };
 
-/// Records passes in order and measures each. Timestamps stand at ALL_COMMANDS with a global barrier
-/// after them, outside renderings: the only placement that blames the right pass on lavapipe.
+/// Records passes in order and measures each. Timestamps stand at ALL_COMMANDS with a global
+/// barrier after them, outside renderings: the only placement that blames the right pass on
+/// lavapipe.
 class Recorder {
  public:
   Recorder(Device& device, PipelineCache& cache);

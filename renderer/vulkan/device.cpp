@@ -8,9 +8,9 @@
 
 namespace penumbra::vulkan {
 
-#define PENUMBRA_DESTROY(Type, Function)                             \
-  void Destroy<Type>::call(VkDevice device, Type handle) {           \
-    Function(device, handle, nullptr);                               \
+#define PENUMBRA_DESTROY(Type, Function)                   \
+  void Destroy<Type>::call(VkDevice device, Type handle) { \
+    Function(device, handle, nullptr);                     \
   }
 PENUMBRA_DESTROY(VkBuffer, vkDestroyBuffer)
 PENUMBRA_DESTROY(VkImage, vkDestroyImage)
@@ -32,16 +32,26 @@ constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 const char* name_of(VkResult result) {
   switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of host memory";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory";
-    case VK_ERROR_INITIALIZATION_FAILED: return "initialization failed";
-    case VK_ERROR_DEVICE_LOST: return "device lost";
-    case VK_ERROR_LAYER_NOT_PRESENT: return "layer not present";
-    case VK_ERROR_EXTENSION_NOT_PRESENT: return "extension not present";
-    case VK_ERROR_FEATURE_NOT_PRESENT: return "feature not present";
-    case VK_ERROR_INCOMPATIBLE_DRIVER: return "no Vulkan driver found";
-    case VK_ERROR_FORMAT_NOT_SUPPORTED: return "format not supported";
-    default: return "failed";
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "out of host memory";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "out of device memory";
+    case VK_ERROR_INITIALIZATION_FAILED:
+      return "initialization failed";
+    case VK_ERROR_DEVICE_LOST:
+      return "device lost";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      return "layer not present";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+      return "extension not present";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "feature not present";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      return "no Vulkan driver found";
+    case VK_ERROR_FORMAT_NOT_SUPPORTED:
+      return "format not supported";
+    default:
+      return "failed";
   }
 }
 
@@ -107,18 +117,28 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
 
 DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index) {
   VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
+  VkPhysicalDeviceProperties2 properties{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
   vkGetPhysicalDeviceProperties2(physical, &properties);
   DeviceInfo info;
   info.index = index;
   info.name = properties.properties.deviceName;
   info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
   switch (properties.properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: info.type = "cpu"; break;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: info.type = "integrated"; break;
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: info.type = "discrete"; break;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: info.type = "virtual"; break;
-    default: info.type = "other";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      info.type = "cpu";
+      break;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      info.type = "integrated";
+      break;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      info.type = "discrete";
+      break;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      info.type = "virtual";
+      break;
+    default:
+      info.type = "other";
   }
   return info;
 }
@@ -136,7 +156,8 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
         if (infos[i].type == type) return i;
     return 0;
   }
-  const bool is_index = std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+  const bool is_index =
+      std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (is_index && wanted == std::to_string(i)) return i;
     const std::string described = lower(infos[i].name + " " + infos[i].driver);
@@ -153,7 +174,8 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
 
 void check(VkResult result, const char* call) {
   if (result != VK_SUCCESS)
-    throw device_error(std::string(call) + ": " + name_of(result) + " (" + std::to_string(result) + ")");
+    throw device_error(std::string(call) + ": " + name_of(result) + " (" + std::to_string(result) +
+                       ")");
 }
 
 Device::Device(const RendererOptions& options) {
@@ -162,16 +184,17 @@ Device::Device(const RendererOptions& options) {
   instance_ = create_instance(options.validation, debug_utils);
   try {
     if (options.validation && debug_utils) {
-      VkDebugUtilsMessengerCreateInfoEXT create{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+      VkDebugUtilsMessengerCreateInfoEXT create{
+          VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
       create.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                                VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-      create.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
-                           VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+      create.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
       create.pfnUserCallback = collect_message;
       create.pUserData = &log_;
       const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
           vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-      check(create_messenger(instance_, &create, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+      check(create_messenger(instance_, &create, nullptr, &messenger_),
+            "vkCreateDebugUtilsMessengerEXT");
     }
     const auto devices = physical_devices(instance_);
     std::vector<DeviceInfo> infos;
@@ -236,7 +259,8 @@ void Device::create_logical_device() {
   constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
   queue_family = count;
   for (std::uint32_t i = 0; i < count && queue_family == count; ++i)
-    if ((families[i].queueFlags & wanted) == wanted && families[i].timestampValidBits > 0) queue_family = i;
+    if ((families[i].queueFlags & wanted) == wanted && families[i].timestampValidBits > 0)
+      queue_family = i;
   if (queue_family == count)
     throw device_error(info.name + " has no queue with graphics, compute and timestamps");
 
@@ -269,7 +293,9 @@ void Device::create_logical_device() {
       vkGetDeviceProcAddr(handle, "vkCmdPushDescriptorSetKHR"));
 }
 
-Device::~Device() { release(); }
+Device::~Device() {
+  release();
+}
 
 void Device::release() {
   if (handle != VK_NULL_HANDLE) {
@@ -291,7 +317,8 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags
                                   VkMemoryPropertyFlags preferred) const {
   for (const VkMemoryPropertyFlags flags : {wanted | preferred, wanted})
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((type_bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+      if ((type_bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & flags) == flags)
+        return i;
   throw device_error("no memory type fits");
 }
 

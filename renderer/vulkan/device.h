@@ -9,9 +9,9 @@
 
 #include "renderer/render.h"
 
-/// A thin layer over the Vulkan C API: owners, memory that is accounted for, shaders with reflection,
-/// recording with timestamps. All images stay in VK_IMAGE_LAYOUT_GENERAL; passes are separated by
-/// global barriers, which the timestamps need anyway.
+/// A thin layer over the Vulkan C API: owners, memory that is accounted for, shaders with
+/// reflection, recording with timestamps. All images stay in VK_IMAGE_LAYOUT_GENERAL; passes are
+/// separated by global barriers, which the timestamps need anyway.
 namespace penumbra::vulkan {
 
 /// Throws a device error naming the call unless `result` is VK_SUCCESS.
@@ -19,9 +19,9 @@ void check(VkResult result, const char* call);
 
 template <class T>
 struct Destroy;  // how each kind of handle is destroyed: device.cpp
-#define PENUMBRA_DESTROY(Type) \
-  template <>                  \
-  struct Destroy<Type> {       \
+#define PENUMBRA_DESTROY(Type)                      \
+  template <>                                       \
+  struct Destroy<Type> {                            \
     static void call(VkDevice device, Type handle); \
   };
 PENUMBRA_DESTROY(VkBuffer)
@@ -74,9 +74,9 @@ struct ValidationLog {
 /// Instance, physical device, logical device and its one graphics and compute queue.
 class Device {
  public:
-  /// Chooses by options.device: an index, a part of a name (any case), or empty for a GPU where there
-  /// is one and else the first device. Throws bad_value (field "device") listing the devices, or a
-  /// device error that names the missing feature.
+  /// Chooses by options.device: an index, a part of a name (any case), or empty for a GPU where
+  /// there is one and else the first device. Throws bad_value (field "device") listing the devices,
+  /// or a device error that names the missing feature.
   explicit Device(const RendererOptions& options);
   ~Device();
   Device(const Device&) = delete;
@@ -95,8 +95,8 @@ class Device {
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;  ///< null without the extension
   PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
 
-  /// Index of the first memory type among `type_bits` that has all `wanted` and, if there is one, all
-  /// `preferred` properties.
+  /// Index of the first memory type among `type_bits` that has all `wanted` and, if there is one,
+  /// all `preferred` properties.
   std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted,
                             VkMemoryPropertyFlags preferred) const;
 

@@ -22,7 +22,8 @@ Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs
   VkDeviceMemory memory = VK_NULL_HANDLE;
   const VkResult result = vkAllocateMemory(device.handle, &info, nullptr, &memory);
   if (result != VK_SUCCESS)
-    throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) + " bytes");
+    throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) +
+                       " bytes");
   return {device.handle, memory};
 }
 
@@ -48,8 +49,8 @@ Owned<VkImageView> make_view(Device& device, VkImage image, VkFormat format, VkI
 }  // namespace
 
 void MemoryLedger::add(const std::string& name, std::uint64_t bytes) {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.name == name; });
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const auto& entry) { return entry.name == name; });
   if (found != entries.end())
     found->bytes += bytes;
   else
@@ -69,7 +70,8 @@ Buffer::Buffer(Device& device, MemoryLedger& ledger, const std::string& name, Vk
     : size_(bytes) {
   const auto& limits = device.properties.limits;
   if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && bytes > limits.maxStorageBufferRange)
-    throw device_error(name + " of " + std::to_string(bytes) + " bytes exceeds the device's limit of " +
+    throw device_error(name + " of " + std::to_string(bytes) +
+                       " bytes exceeds the device's limit of " +
                        std::to_string(limits.maxStorageBufferRange) + " for a storage buffer");
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = bytes;
@@ -109,11 +111,13 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
   info.usage = description.usage;
   info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageFormatProperties format_limits{};
-  if (vkGetPhysicalDeviceImageFormatProperties(device.physical, info.format, info.imageType, info.tiling,
-                                               info.usage, 0, &format_limits) != VK_SUCCESS)
+  if (vkGetPhysicalDeviceImageFormatProperties(device.physical, info.format, info.imageType,
+                                               info.tiling, info.usage, 0,
+                                               &format_limits) != VK_SUCCESS)
     throw device_error("the device has no image format for " + name);
   // A sum over all levels below 4/3 of the base; the driver's own answer overflows for huge images.
-  const double bytes = 16.0 * 4.0 / 3.0 * description.width * description.height * description.layers;
+  const double bytes =
+      16.0 * 4.0 / 3.0 * description.width * description.height * description.layers;
   if (bytes > 64e9) throw device_error(name + " is too large");
 
   VkImage image = VK_NULL_HANDLE;
@@ -131,14 +135,15 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
   const VkImageViewType type = description.layers > 1 || description.array_view
                                    ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
                                    : VK_IMAGE_VIEW_TYPE_2D;
-  constexpr VkImageUsageFlags viewed =
-      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  constexpr VkImageUsageFlags viewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   if ((description.usage & viewed) != 0) {
     const VkImageSubresourceRange all{view_aspect, 0, description.levels, 0, description.layers};
     view_ = make_view(device, image_, description.format, type, all);
     if (has_stencil(description.format)) {
-      const VkImageSubresourceRange stencil{VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, description.layers};
+      const VkImageSubresourceRange stencil{VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0,
+                                            description.layers};
       stencil_view_ = make_view(device, image_, description.format, type, stencil);
     }
     for (std::uint32_t level = 0; level < description.levels; ++level)
@@ -166,8 +171,9 @@ ConstantArena::ConstantArena(Device& device, MemoryLedger& ledger, VkDeviceSize 
     : buffer_(device, ledger, "constants", bytes,
               VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
               MemoryKind::upload),
-      alignment_(std::max({VkDeviceSize{64}, device.properties.limits.minUniformBufferOffsetAlignment,
-                           device.properties.limits.minStorageBufferOffsetAlignment})) {}
+      alignment_(
+          std::max({VkDeviceSize{64}, device.properties.limits.minUniformBufferOffsetAlignment,
+                    device.properties.limits.minStorageBufferOffsetAlignment})) {}
 
 BufferRange ConstantArena::push(const void* data, VkDeviceSize bytes) {
   const VkDeviceSize offset = (used_ + alignment_ - 1) / alignment_ * alignment_;

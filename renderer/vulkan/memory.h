@@ -42,7 +42,9 @@ class Buffer {
   VkDeviceSize size() const { return size_; }
   void* mapped() const { return mapped_; }
   BufferRange whole() const { return {buffer_, 0, size_}; }
-  BufferRange range(VkDeviceSize offset, VkDeviceSize size) const { return {buffer_, offset, size}; }
+  BufferRange range(VkDeviceSize offset, VkDeviceSize size) const {
+    return {buffer_, offset, size};
+  }
 
  private:
   Owned<VkDeviceMemory> memory_;  // outlives the buffer that is bound to it
@@ -67,13 +69,14 @@ class Image {
   Image() = default;
   /// Checks the device's limits first (a driver may accept what it cannot hold), allocates, charges
   /// `ledger`, and moves the image to layout GENERAL.
-  Image(Device& device, MemoryLedger& ledger, const std::string& name, const ImageDescription& description);
+  Image(Device& device, MemoryLedger& ledger, const std::string& name,
+        const ImageDescription& description);
 
   explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
   VkImage handle() const { return image_; }
   const ImageDescription& description() const { return description_; }
   VkImageAspectFlags aspects() const { return aspects_; }
-  VkImageView view() const { return view_; }                  ///< depth or colour, all layers and levels
+  VkImageView view() const { return view_; }  ///< depth or colour, all layers and levels
   VkImageView stencil_view() const { return stencil_view_; }  ///< null without stencil
   /// One layer and level, for attachments and storage images.
   VkImageView slice(std::uint32_t layer, std::uint32_t level = 0) const {

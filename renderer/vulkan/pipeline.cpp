@@ -22,10 +22,10 @@ void append(std::ostringstream& key, const StencilFace& face) {
 std::string key_of(const GraphicsState& state) {
   std::ostringstream key;
   for (const VkFormat format : state.color_formats) key << format << ',';
-  key << ';' << state.depth_format << ',' << static_cast<int>(state.vertex_input) << ',' << state.topology
-      << ',' << state.cull << ',' << state.depth_test << state.depth_write << ',' << state.depth_compare
-      << ',' << state.depth_clamp << static_cast<int>(state.blend) << state.color_write
-      << state.stencil_test << ';';
+  key << ';' << state.depth_format << ',' << static_cast<int>(state.vertex_input) << ','
+      << state.topology << ',' << state.cull << ',' << state.depth_test << state.depth_write << ','
+      << state.depth_compare << ',' << state.depth_clamp << static_cast<int>(state.blend)
+      << state.color_write << state.stencil_test << ';';
   append(key, state.stencil_front);
   append(key, state.stencil_back);
   return key.str();
@@ -40,7 +40,8 @@ struct VertexLayout {
   std::vector<VkVertexInputAttributeDescription> attributes;
 };
 
-/// Positions stand in a buffer of their own, so that passes which need nothing else read nothing else.
+/// Positions stand in a buffer of their own, so that passes which need nothing else read nothing
+/// else.
 VertexLayout vertex_layout(VertexInput input) {
   VertexLayout layout;
   if (input == VertexInput::none) return layout;
@@ -137,7 +138,8 @@ std::unique_ptr<Pipeline> PipelineCache::start(const ProgramSource& source) {
   made->program = compile(library_, source);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto& reflected : made->program.bindings)
-    bindings.push_back({reflected.binding, reflected.type, reflected.count, reflected.stages, nullptr});
+    bindings.push_back(
+        {reflected.binding, reflected.type, reflected.count, reflected.stages, nullptr});
   VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set_info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -155,7 +157,8 @@ std::unique_ptr<Pipeline> PipelineCache::start(const ProgramSource& source) {
   layout_info.pushConstantRangeCount = made->program.push_constants ? 1 : 0;
   layout_info.pPushConstantRanges = &constants;
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device_.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
+  check(vkCreatePipelineLayout(device_.handle, &layout_info, nullptr, &layout),
+        "vkCreatePipelineLayout");
   made->layout = {device_.handle, layout};
   return made;
 }
@@ -167,7 +170,8 @@ const Pipeline& PipelineCache::graphics(const ProgramSource& source, const Graph
   const StageList stages(device_.handle, made->program);
   const VertexLayout vertices = vertex_layout(state.vertex_input);
 
-  VkPipelineVertexInputStateCreateInfo vertex{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineVertexInputStateCreateInfo vertex{
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   vertex.vertexBindingDescriptionCount = static_cast<std::uint32_t>(vertices.bindings.size());
   vertex.pVertexBindingDescriptions = vertices.bindings.data();
   vertex.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(vertices.attributes.size());
@@ -177,14 +181,17 @@ const Pipeline& PipelineCache::graphics(const ProgramSource& source, const Graph
   assembly.topology = state.topology;
   VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
   viewport.viewportCount = viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+  VkPipelineRasterizationStateCreateInfo raster{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
   raster.depthClampEnable = state.depth_clamp;
   raster.polygonMode = VK_POLYGON_MODE_FILL;
   raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   raster.lineWidth = 1.0f;
-  VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+  VkPipelineMultisampleStateCreateInfo multisample{
+      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  VkPipelineDepthStencilStateCreateInfo depth{
+      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
   depth.depthTestEnable = state.depth_test;
   depth.depthWriteEnable = state.depth_write;
   depth.depthCompareOp = state.depth_compare;
@@ -197,8 +204,10 @@ const Pipeline& PipelineCache::graphics(const ProgramSource& source, const Graph
   attachment.srcAlphaBlendFactor = attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
   attachment.colorBlendOp = attachment.alphaBlendOp = VK_BLEND_OP_ADD;
   attachment.colorWriteMask = state.color_write ? 0xfu : 0u;
-  const std::vector<VkPipelineColorBlendAttachmentState> attachments(state.color_formats.size(), attachment);
-  VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  const std::vector<VkPipelineColorBlendAttachmentState> attachments(state.color_formats.size(),
+                                                                     attachment);
+  VkPipelineColorBlendStateCreateInfo blend{
+      VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
   blend.pAttachments = attachments.data();
   // Cull mode is set per draw: one pipeline serves single-sided and double-sided materials.
@@ -260,7 +269,8 @@ VkSampler PipelineCache::sampler(Sampling sampling) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   const bool nearest = sampling == Sampling::nearest;
   info.magFilter = info.minFilter = nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-  const bool mipmapped = sampling == Sampling::linear_repeat || sampling == Sampling::linear_mipmapped ||
+  const bool mipmapped = sampling == Sampling::linear_repeat ||
+                         sampling == Sampling::linear_mipmapped ||
                          sampling == Sampling::anisotropic;
   info.mipmapMode = mipmapped ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.maxLod = mipmapped ? VK_LOD_CLAMP_NONE : 0.0f;
@@ -281,7 +291,8 @@ VkSampler PipelineCache::sampler(Sampling sampling) {
   return slot;
 }
 
-void PipelineCache::push(VkCommandBuffer commands, const Pipeline& pipeline, const Bindings& bindings) {
+void PipelineCache::push(VkCommandBuffer commands, const Pipeline& pipeline,
+                         const Bindings& bindings) {
   const auto& reflected = pipeline.program.bindings;
   std::vector<VkDescriptorImageInfo> images(reflected.size());
   std::vector<VkWriteDescriptorSet> writes;
@@ -303,10 +314,10 @@ void PipelineCache::push(VkCommandBuffer commands, const Pipeline& pipeline, con
     writes.push_back(write);
   }
   if (!writes.empty())
-    device_.push_descriptors(commands,
-                             pipeline.compute ? VK_PIPELINE_BIND_POINT_COMPUTE
-                                              : VK_PIPELINE_BIND_POINT_GRAPHICS,
-                             pipeline.layout, 0, static_cast<std::uint32_t>(writes.size()), writes.data());
+    device_.push_descriptors(
+        commands,
+        pipeline.compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS,
+        pipeline.layout, 0, static_cast<std::uint32_t>(writes.size()), writes.data());
 }
 
 }  // namespace penumbra::vulkan

@@ -12,11 +12,11 @@
 namespace penumbra::vulkan {
 
 enum class Sampling {
-  nearest,          ///< clamped to the edge
-  linear,           ///< clamped to the edge
-  linear_repeat,    ///< surface textures: trilinear, repeating
-  linear_mipmapped, ///< trilinear, clamped to the edge
-  anisotropic,      ///< 16x anisotropic trilinear, clamped to the edge
+  nearest,                ///< clamped to the edge
+  linear,                 ///< clamped to the edge
+  linear_repeat,          ///< surface textures: trilinear, repeating
+  linear_mipmapped,       ///< trilinear, clamped to the edge
+  anisotropic,            ///< 16x anisotropic trilinear, clamped to the edge
   compare_less_or_equal,  ///< bilinear depth comparison: 1 where reference <= texel
 };
 

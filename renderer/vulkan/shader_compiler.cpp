@@ -15,19 +15,27 @@ namespace {
 
 EShLanguage language_of(VkShaderStageFlagBits stage) {
   switch (stage) {
-    case VK_SHADER_STAGE_VERTEX_BIT: return EShLangVertex;
-    case VK_SHADER_STAGE_GEOMETRY_BIT: return EShLangGeometry;
-    case VK_SHADER_STAGE_FRAGMENT_BIT: return EShLangFragment;
-    default: return EShLangCompute;
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return EShLangVertex;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return EShLangGeometry;
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return EShLangFragment;
+    default:
+      return EShLangCompute;
   }
 }
 
 VkShaderStageFlagBits stage_of(EShLanguage language) {
   switch (language) {
-    case EShLangVertex: return VK_SHADER_STAGE_VERTEX_BIT;
-    case EShLangGeometry: return VK_SHADER_STAGE_GEOMETRY_BIT;
-    case EShLangFragment: return VK_SHADER_STAGE_FRAGMENT_BIT;
-    default: return VK_SHADER_STAGE_COMPUTE_BIT;
+    case EShLangVertex:
+      return VK_SHADER_STAGE_VERTEX_BIT;
+    case EShLangGeometry:
+      return VK_SHADER_STAGE_GEOMETRY_BIT;
+    case EShLangFragment:
+      return VK_SHADER_STAGE_FRAGMENT_BIT;
+    default:
+      return VK_SHADER_STAGE_COMPUTE_BIT;
   }
 }
 
@@ -51,20 +59,19 @@ class NameResolver : public glslang::TIoMapResolver {
 
   int resolveBinding(EShLanguage language, glslang::TVarEntryInfo& entry) override {
     const glslang::TType& type = entry.symbol->getType();
-    if (type.getQualifier().isPushConstant()) {
-      program_.push_constants = true;
+    if (type.getQualifier().isPushConstant()) return -1;
+    if (type.getBasicType() != glslang::EbtSampler && type.getBasicType() != glslang::EbtBlock)
       return -1;
-    }
-    if (type.getBasicType() != glslang::EbtSampler && type.getBasicType() != glslang::EbtBlock) return -1;
     const std::string name = entry.symbol->getAccessName().c_str();
     const auto next = static_cast<std::uint32_t>(numbers_.size());
     const std::uint32_t binding = numbers_.emplace(name, next).first->second;
     if (binding == next) program_.declared.push_back(name);
     if (entry.live) note(name, binding, type, stage_of(language));
-    return static_cast<int>(binding);
+    entry.newBinding = static_cast<int>(binding);  // glslang reads it from here
+    return entry.newBinding;
   }
   bool validateBinding(EShLanguage, glslang::TVarEntryInfo&) override { return true; }
-  int resolveSet(EShLanguage, glslang::TVarEntryInfo&) override { return 0; }
+  int resolveSet(EShLanguage, glslang::TVarEntryInfo& entry) override { return entry.newSet = 0; }
   int resolveUniformLocation(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
   bool validateInOut(EShLanguage, glslang::TVarEntryInfo&) override { return true; }
   int resolveInOutLocation(EShLanguage, glslang::TVarEntryInfo&) override { return -1; }
@@ -86,14 +93,16 @@ class NameResolver : public glslang::TIoMapResolver {
   void note(const std::string& name, std::uint32_t binding, const glslang::TType& type,
             VkShaderStageFlagBits stage) {
     auto& list = program_.bindings;
-    const auto found =
-        std::find_if(list.begin(), list.end(), [&](const auto& known) { return known.name == name; });
+    const auto found = std::find_if(list.begin(), list.end(),
+                                    [&](const auto& known) { return known.name == name; });
     if (found != list.end()) {
       found->stages |= stage;
       return;
     }
-    const auto count = type.isArray() ? static_cast<std::uint32_t>(type.getCumulativeArraySize()) : 1u;
-    list.push_back({name, binding, descriptor_type(type), count, static_cast<VkShaderStageFlags>(stage)});
+    const auto count =
+        type.isArray() ? static_cast<std::uint32_t>(type.getCumulativeArraySize()) : 1u;
+    list.push_back(
+        {name, binding, descriptor_type(type), count, static_cast<VkShaderStageFlags>(stage)});
   }
 
   CompiledProgram& program_;
@@ -114,6 +123,16 @@ class LibraryIncluder : public glslang::TShader::Includer {
   const ShaderLibrary& library_;
 };
 
+/// Whether a variable of the storage class PushConstant is declared (SPIR-V 3.7 and 3.42.8).
+bool declares_push_constants(const std::vector<std::uint32_t>& words) {
+  constexpr std::size_t header = 5;
+  constexpr std::uint32_t op_variable = 59;
+  constexpr std::uint32_t push_constant = 9;
+  for (std::size_t i = header; i < words.size(); i += words[i] >> 16)
+    if ((words[i] & 0xffffu) == op_variable && words[i + 3] == push_constant) return true;
+  return false;
+}
+
 /// glslang wants one process-wide start.
 void start_glslang() {
   static const bool started = glslang::InitializeProcess();
@@ -126,7 +145,9 @@ void ShaderLibrary::add(std::span<const EmbeddedFile> files) {
   for (const EmbeddedFile& file : files) texts_[std::string(file.path)] = std::string(file.text);
 }
 
-void ShaderLibrary::add(const std::string& path, const std::string& text) { texts_[path] = text; }
+void ShaderLibrary::add(const std::string& path, const std::string& text) {
+  texts_[path] = text;
+}
 
 const std::string& ShaderLibrary::text(const std::string& path) const {
   const auto found = texts_.find(path);
@@ -167,6 +188,7 @@ CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& sourc
     auto& words = compiled.spirv[stage];
     glslang::GlslangToSpv(*program.getIntermediate(language_of(stage)), words, &logger, &options);
     if (words.empty()) throw std::logic_error("shader " + path + ": " + logger.getAllMessages());
+    compiled.push_constants = compiled.push_constants || declares_push_constants(words);
   }
   return compiled;
 }

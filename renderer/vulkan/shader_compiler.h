@@ -32,7 +32,8 @@ struct ProgramSource {
 };
 
 /// A descriptor that the program reads or writes, under its GLSL name: the variable's for textures
-/// and images, the block's for buffers. Bindings of set 0 are assigned by name, alike in all stages.
+/// and images, the block's for buffers. Bindings of set 0 are assigned by name, alike in all
+/// stages.
 struct ReflectedBinding {
   std::string name;
   std::uint32_t binding = 0;
@@ -48,8 +49,8 @@ struct CompiledProgram {
   bool push_constants = false;             ///< has a push_constant block (of at most 128 bytes)
 };
 
-/// Compiles and links GLSL 4.60 for Vulkan 1.3. Throws std::logic_error with file and line: a shader
-/// that does not compile is a defect of the program, not of a request.
+/// Compiles and links GLSL 4.60 for Vulkan 1.3. Throws std::logic_error with file and line: a
+/// shader that does not compile is a defect of the program, not of a request.
 CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& source);
 
 }  // namespace penumbra::vulkan

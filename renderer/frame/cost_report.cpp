@@ -1,0 +1,59 @@
+#include "renderer/frame/cost_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+double quantile(std::vector<double> values, double probability) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double place = probability * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(std::floor(place));
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
+}
+
+void CostReport::add(const std::vector<vulkan::PassRecord>& records, double wall_ms, bool counted) {
+  double sum = 0.0;
+  for (const vulkan::PassRecord& record : records) {
+    auto found = std::find_if(passes_.begin(), passes_.end(),
+                              [&](const Pass& pass) { return pass.name == record.name; });
+    if (found == passes_.end()) {
+      passes_.push_back({record.name, {}, {}});
+      found = passes_.end() - 1;
+    }
+    if (record.counted) found->counters = record.counters;
+    if (counted) found->times.push_back(record.ms);
+    sum += record.ms;
+  }
+  if (!counted) return;
+  frame_times_.push_back(sum);
+  wall_times_.push_back(wall_ms);
+}
+
+Cost CostReport::summary() const {
+  Cost cost;
+  cost.median_ms = quantile(frame_times_, 0.5);
+  cost.p95_ms = quantile(frame_times_, 0.95);
+  cost.frames = static_cast<std::uint32_t>(frame_times_.size());
+  cost.wall_median_ms = quantile(wall_times_, 0.5);
+  for (const Pass& pass : passes_) {
+    PassCost out;
+    out.name = pass.name;
+    out.median_ms = quantile(pass.times, 0.5);
+    const auto& c = pass.counters;
+    out.vertices = c[0];
+    out.primitives = c[1];
+    out.vertex_invocations = c[2];
+    out.geometry_invocations = c[3];
+    out.geometry_primitives = c[4];
+    out.clipped_primitives = c[5];
+    out.fragment_invocations = c[6];
+    out.compute_invocations = c[7];
+    cost.passes.push_back(out);
+  }
+  return cost;
+}
+
+}  // namespace penumbra

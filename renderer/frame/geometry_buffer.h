@@ -1,0 +1,22 @@
+#pragma once
+
+#include "renderer/vulkan/memory.h"
+
+namespace penumbra {
+
+/// What the camera sees, a sample per texel. Techniques may read all of it; those that declared
+/// `stencil` may test against and write the stencil, which is zero when prepare begins.
+struct GeometryBuffer {
+  static constexpr VkFormat position_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  static constexpr VkFormat words_format = VK_FORMAT_R32G32B32A32_UINT;
+  static constexpr VkFormat radiance_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+  vulkan::Image position;  ///< xyz world, w 1 on a surface and 0 on background
+  vulkan::Image words;     ///< packed surface, see geometry_buffer.glsl
+  vulkan::Image depth;     ///< reversed: 1 near, 0 infinity
+  vulkan::Image radiance;  ///< linear light so far
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+
+#include "renderer/frame/prepare_context.h"
+#include "renderer/render.h"
+
+namespace penumbra {
+
+/// Everything that stays the same over the frames of one render.
+struct FrameSetup {
+  const RenderRequest& request;
+  const ParameterValues& parameters;  ///< complete
+  const GpuScene& scene;
+  const Camera& camera;
+  CameraMatrices matrices;
+  std::uint32_t side = 1;   ///< samples along a pixel's side
+  std::uint32_t width = 0;  ///< samples of the frame
+  std::uint32_t height = 0;
+  std::string declarations;  ///< GLSL of the parameters
+};
+
+/// One light of a render: its technique's instance and everything that is drawn for it.
+class LightPass {
+ public:
+  /// Creates the technique's instance and asks what it requires; throws `unsupported`.
+  LightPass(const FrameSetup& setup, const Light& light);
+
+  const Requirements& needs() const { return needs_; }
+  const std::vector<ResourceCost>& memory() const { return ledger_.entries; }
+
+  struct Frame {
+    vulkan::Device& device;
+    vulkan::PipelineCache& pipelines;
+    vulkan::ShaderLibrary& library;
+    vulkan::Recorder& recorder;
+    vulkan::ConstantArena& constants;
+    const GeometryBuffer& geometry;
+    const vulkan::Image* visibility;  ///< samples of this light, or null
+    vulkan::Bindings frame_bindings;
+    std::uint32_t frame_index;
+    std::vector<std::string>& notes;
+  };
+  /// Prepares and shades all batches of the light points. `after_batch` is called with the share
+  /// done.
+  void draw(const Frame& frame, const std::function<void(double)>& after_batch);
+  /// Draws a diagnostic picture into `target` (RGBA8, samples of the frame), after draw.
+  void draw_diagnostic(const Frame& frame, const std::string& name, const vulkan::Image& target);
+
+ private:
+  void shade(const Frame& frame, const vulkan::Bindings& bindings, bool first_batch);
+  vulkan::Bindings shading_bindings(const Frame& frame, const vulkan::Bindings& light_bindings,
+                                    const vulkan::Pipeline& pipeline) const;
+  std::string program_path(vulkan::ShaderLibrary& library, const std::string& head) const;
+
+  const FrameSetup& setup_;
+  WorldLight light_;
+  TechniqueInput input_;
+  Requirements needs_;
+  std::unique_ptr<Technique> technique_;
+  std::vector<glm::vec4> points_;  ///< all points, set after set
+  std::uint32_t points_per_set_ = 1;
+  vulkan::MemoryLedger ledger_;
+  vulkan::Bindings last_bindings_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,193 @@
+#include "renderer/frame/light_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <random>
+
+#include "renderer/frame/transforms.h"
+
+namespace penumbra {
+namespace {
+
+std::uint64_t mix(std::uint64_t x) {  // splitmix64's finaliser (Steele et al. 2014)
+  x += 0x9e3779b97f4a7c15ull;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebull;
+  return x ^ x >> 31;
+}
+
+/// Direction numbers of the first three Sobol' dimensions (Joe and Kuo 2008), most significant
+/// first.
+std::array<std::uint32_t, 32> direction_numbers(int dimension) {
+  std::array<std::uint32_t, 32> v{};
+  if (dimension == 0) {
+    for (int i = 0; i < 32; ++i) v[static_cast<std::size_t>(i)] = 1u << (31 - i);
+    return v;
+  }
+  // Primitive polynomials x + 1 and x^2 + x + 1, with m = {1} and {1, 3}.
+  const int degree = dimension;
+  const std::array<std::uint32_t, 2> m{1, 3};
+  for (int i = 0; i < 32; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (i < degree) {
+      v[k] = m[k] << (31 - i);
+    } else {
+      const auto d = static_cast<std::size_t>(degree);
+      v[k] = v[k - d] ^ v[k - d] >> degree;
+      if (degree == 2) v[k] ^= v[k - 1];
+    }
+  }
+  return v;
+}
+
+std::uint32_t sobol(const std::array<std::uint32_t, 32>& v, std::uint32_t index) {
+  std::uint32_t x = 0;
+  for (std::size_t bit = 0; index != 0; index >>= 1, ++bit)
+    if ((index & 1u) != 0) x ^= v[bit];
+  return x;
+}
+
+/// Owen's nested uniform scrambling: each bit is flipped by a hash of the bits above it.
+std::uint32_t scramble(std::uint32_t x, std::uint64_t seed) {
+  std::uint32_t result = 0;
+  for (int bit = 31; bit >= 0; --bit) {
+    const std::uint64_t prefix = bit == 31 ? 0 : std::uint64_t{x} >> (bit + 1);
+    const std::uint64_t flip = mix(seed ^ mix(prefix << 6 | static_cast<std::uint64_t>(bit))) & 1u;
+    result |= ((x >> bit & 1u) ^ static_cast<std::uint32_t>(flip)) << bit;
+  }
+  return result;
+}
+
+double unit(std::uint32_t bits) {
+  return (bits + 0.5) * 0x1p-32;
+}
+
+/// Concentric map of the square onto the unit disc (Shirley and Chiu 1997).
+glm::dvec2 disc(double u, double v) {
+  const double a = 2.0 * u - 1.0;
+  const double b = 2.0 * v - 1.0;
+  if (a == 0.0 && b == 0.0) return {0.0, 0.0};
+  const double quarter = glm::pi<double>() / 4.0;
+  if (std::abs(a) > std::abs(b))
+    return a * glm::dvec2(std::cos(quarter * b / a), std::sin(quarter * b / a));
+  return b * glm::dvec2(std::cos(2.0 * quarter - quarter * a / b),
+                        std::sin(2.0 * quarter - quarter * a / b));
+}
+
+std::uint32_t spread(std::uint32_t x) {  // 16 bits to the even places
+  std::uint32_t r = 0;
+  for (int i = 0; i < 16; ++i) r |= (x >> i & 1u) << (2 * i);
+  return r;
+}
+
+/// Offset from the centre along (right, up, direction) for a point of the unit cube; metres, or
+/// tangents of the angle when directional.
+glm::dvec3 extent_offset(const Light& light, const glm::dvec3& u) {
+  const bool angular = light.kind == LightKind::directional;
+  const auto length = [&](double x) { return angular ? std::tan(glm::radians(x)) : x; };
+  switch (light.extent.kind) {
+    case ExtentKind::none:
+      return glm::dvec3(0.0);
+    case ExtentKind::disc:
+      return glm::dvec3(length(light.extent.radius) * disc(u.x, u.y), 0.0);
+    case ExtentKind::rectangle:
+      return {length(0.5 * light.extent.size.x) * (2.0 * u.x - 1.0),
+              length(0.5 * light.extent.size.y) * (2.0 * u.y - 1.0), 0.0};
+    case ExtentKind::sphere: {
+      // Seen from far away the ball is a disc; near, its depth matters.
+      if (angular) return glm::dvec3(length(light.extent.radius) * disc(u.x, u.y), 0.0);
+      const double z = 2.0 * u.y - 1.0;
+      const double ring = std::sqrt(std::max(0.0, 1.0 - z * z));
+      const double phi = 2.0 * glm::pi<double>() * u.x;
+      return light.extent.radius * std::cbrt(u.z) *
+             glm::dvec3(ring * std::cos(phi), ring * std::sin(phi), z);
+    }
+  }
+  return glm::dvec3(0.0);
+}
+
+}  // namespace
+
+WorldLight world_light(const Light& light, const glm::dvec3& origin) {
+  WorldLight world;
+  world.kind = light.kind;
+  world.position = light.position - origin;
+  world.direction = glm::normalize(light.direction);
+  world.up = across(world.direction, light.up);
+  world.right = glm::cross(world.direction, world.up);
+  world.source = &light;
+  return world;
+}
+
+glm::dvec3 extent_half_size(const Light& light) {
+  switch (light.extent.kind) {
+    case ExtentKind::sphere:
+      return glm::dvec3(light.extent.radius);
+    case ExtentKind::disc:
+      return {light.extent.radius, light.extent.radius, 0.0};
+    case ExtentKind::rectangle:
+      return {0.5 * light.extent.size.x, 0.5 * light.extent.size.y, 0.0};
+    case ExtentKind::none:
+      break;
+  }
+  return glm::dvec3(0.0);
+}
+
+shader::LightData light_data(const WorldLight& world, float points, float weight) {
+  const Light& light = *world.source;
+  const glm::dvec3 half = extent_half_size(light);
+  shader::LightData data{};
+  data.position =
+      glm::vec4(world.position, static_cast<float>(world.kind == LightKind::spot          ? 0
+                                                   : world.kind == LightKind::directional ? 1
+                                                                                          : 2));
+  data.direction = glm::vec4(world.direction, light.range);
+  data.color = glm::vec4(light.color * light.intensity,
+                         light.attenuation == Attenuation::inverse_square ? 1.0f : 0.0f);
+  data.cone = {std::cos(glm::radians(light.inner_angle)), std::cos(glm::radians(light.outer_angle)),
+               points, weight};
+  data.extent = {static_cast<float>(light.extent.kind), half.x, half.y, 0.0f};
+  data.right = glm::vec4(world.right, 0.0f);
+  data.up = glm::vec4(world.up, 0.0f);
+  return data;
+}
+
+std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
+                                    std::uint32_t sets, std::uint64_t seed, bool random) {
+  std::vector<glm::vec4> points;
+  points.reserve(std::size_t{count} * sets);
+  const bool directional = light.kind == LightKind::directional;
+  std::mt19937_64 generator(seed);
+  const auto random_unit = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
+  std::array<std::array<std::uint32_t, 32>, 3> v;
+  for (int d = 0; d < 3; ++d) v[static_cast<std::size_t>(d)] = direction_numbers(d);
+  for (std::uint32_t set = 0; set < sets; ++set) {
+    std::vector<std::pair<std::uint32_t, glm::dvec3>> ordered;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      glm::dvec3 u(0.5);
+      for (int d = 0; d < 3; ++d) {
+        const auto k = static_cast<std::size_t>(d);
+        u[d] = random ? random_unit()
+                      : unit(scramble(sobol(v[k], set * count + i), mix(seed * 3 + k)));
+      }
+      const glm::dvec3 offset = extent_offset(*light.source, u);
+      const auto cell = [](double x) {
+        return static_cast<std::uint32_t>(std::clamp(x, 0.0, 1.0) * 65535.0);
+      };
+      ordered.emplace_back(spread(cell(u.x)) | spread(cell(u.y)) << 1, offset);
+    }
+    std::stable_sort(ordered.begin(), ordered.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [code, offset] : ordered) {
+      const glm::dvec3 moved =
+          offset.x * light.right + offset.y * light.up + offset.z * light.direction;
+      points.emplace_back(
+          directional ? glm::normalize(moved - light.direction) : light.position + moved, 0.0);
+    }
+  }
+  return points;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,69 @@
+#include "renderer/frame/prepare_context.h"
+
+namespace penumbra {
+
+bool may_touch(const glm::mat4& clip_from_world, const glm::vec3& low, const glm::vec3& high) {
+  int outside[4] = {0, 0, 0, 0};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 point((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                          (corner & 4) != 0 ? high.z : low.z);
+    const glm::vec4 clip = clip_from_world * glm::vec4(point, 1.0f);
+    outside[0] += clip.x < -clip.w;
+    outside[1] += clip.x > clip.w;
+    outside[2] += clip.y < -clip.w;
+    outside[3] += clip.y > clip.w;
+  }
+  for (const int count : outside)
+    if (count == 8) return false;
+  return true;
+}
+
+void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                                  const vulkan::Bindings& bindings,
+                                  const glm::mat4& clip_from_world) {
+  vulkan::GraphicsState state = program.state;
+  const auto pipeline_for = [&](bool masked) -> const vulkan::Pipeline& {
+    vulkan::ProgramSource source{program.stages, program.preamble};
+    if (masked) source.preamble += "#define MASKED\n";
+    state.vertex_input = masked ? vulkan::VertexInput::surface : vulkan::VertexInput::position;
+    return pipelines.graphics(source, state);
+  };
+  vulkan::Bindings all = frame_bindings;
+  all.add(bindings);
+  const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
+  const VkDeviceSize offsets[] = {0, 0};
+  vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
+  vkCmdBindIndexBuffer(commands.handle(), scene.index_buffer().handle(), 0, VK_INDEX_TYPE_UINT32);
+
+  const auto& ranges = scene.ranges();
+  const auto drawn = [&](const DrawRange& range) {
+    return range.casts_shadow && may_touch(clip_from_world, range.low, range.high);
+  };
+  for (std::size_t i = 0; i < ranges.size();) {
+    const DrawRange& first = ranges[i];
+    if (!drawn(first)) {
+      ++i;
+      continue;
+    }
+    // Neighbouring ranges that are drawn alike become one draw; opaque ones whatever their
+    // material.
+    std::uint32_t count = first.index_count;
+    std::size_t next = i + 1;
+    while (next < ranges.size() && drawn(ranges[next]) && ranges[next].masked == first.masked &&
+           ranges[next].double_sided == first.double_sided &&
+           (!first.masked || ranges[next].material == first.material)) {
+      count += ranges[next].index_count;
+      ++next;
+    }
+    if (first.masked)
+      all.texture("surface_texture", scene.texture_of(first.material),
+                  vulkan::Sampling::linear_repeat);
+    commands.bind(pipeline_for(first.masked), all);
+    if (first.masked) commands.constants(first.material);
+    commands.cull(first.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull);
+    vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
+    i = next;
+  }
+}
+
+}  // namespace penumbra

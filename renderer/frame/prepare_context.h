@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+
+#include "renderer/frame/geometry_buffer.h"
+#include "renderer/frame/light_points.h"
+#include "renderer/frame/transforms.h"
+#include "renderer/scene/gpu_scene.h"
+#include "renderer/technique.h"
+#include "renderer/vulkan/commands.h"
+
+namespace penumbra {
+
+/// How casters are drawn. The core adds the vertex input, and compiles a second variant with MASKED
+/// defined (and surface attributes as input) for materials with holes.
+struct CasterProgram {
+  std::map<VkShaderStageFlagBits, std::string> stages;
+  std::string preamble;
+  vulkan::GraphicsState state;
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< of single-sided materials; others are never culled
+};
+
+/// What a technique may use in `prepare`: the device, the scene, its light, the geometry buffer,
+/// and passes that are timed and labelled. Everything created through `memory` is charged to it.
+class PrepareContext {
+ public:
+  const TechniqueInput& input;
+  const GpuScene& scene;
+  const WorldLight& light;
+  const CameraMatrices& camera;
+  const GeometryBuffer& geometry;
+  vulkan::Device& device;
+  vulkan::PipelineCache& pipelines;
+  vulkan::MemoryLedger& memory;
+  vulkan::ConstantArena& constants;  ///< of this frame
+  vulkan::Recorder& recorder;
+  const vulkan::Bindings&
+      frame_bindings;                 ///< FrameBlock, LightBlock, LightPointBlock, ParameterBlock,
+                                      ///< geometry_position, geometry_words, MaterialBlock
+  const std::string& declarations;    ///< GLSL of the parameters, for preambles of own programs
+  std::span<const glm::vec4> points;  ///< light points of this batch, sets of points_per_batch
+  std::uint32_t points_in_batch;
+  std::uint32_t batch;
+  std::uint32_t frame_index;
+  std::vector<std::string>& notes;  ///< shown with the result; adding one twice is harmless
+
+  /// Records a timed pass. Passes of one name add up in the report.
+  void pass(const std::string& name, const std::function<void(vulkan::Commands&)>& record) {
+    recorder.pass(name, record);
+  }
+
+  /// Draws all casters that may touch the clip volume of `clip_from_world`; inside a rendering.
+  /// `bindings` are the program's own resources; those of the frame are added.
+  void draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                    const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
+};
+
+/// False only if the box lies wholly outside one of the side planes x = +-w, y = +-w.
+bool may_touch(const glm::mat4& clip_from_world, const glm::vec3& low, const glm::vec3& high);
+
+}  // namespace penumbra

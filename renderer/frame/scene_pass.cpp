@@ -1,0 +1,98 @@
+#include "renderer/frame/scene_pass.h"
+
+#include "renderer/frame/prepare_context.h"
+
+namespace penumbra {
+
+GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger& ledger,
+                                    std::uint32_t width, std::uint32_t height, bool stencil) {
+  constexpr VkImageUsageFlags color =
+      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  const auto image = [&](const char* name, VkFormat format, VkImageUsageFlags usage) {
+    vulkan::ImageDescription description;
+    description.format = format;
+    description.width = width;
+    description.height = height;
+    description.usage = usage;
+    return vulkan::Image(device, ledger, name, description);
+  };
+  GeometryBuffer buffer;
+  buffer.width = width;
+  buffer.height = height;
+  buffer.position = image("geometry positions", GeometryBuffer::position_format, color);
+  buffer.words = image("geometry surfaces", GeometryBuffer::words_format, color);
+  buffer.depth = image(stencil ? "geometry depth and stencil" : "geometry depth",
+                       stencil ? VK_FORMAT_D32_SFLOAT_S8_UINT : VK_FORMAT_D32_SFLOAT,
+                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+  buffer.radiance = image("radiance", GeometryBuffer::radiance_format, color);
+  return buffer;
+}
+
+void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+                   const GpuScene& scene, const GeometryBuffer& buffer,
+                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world) {
+  vulkan::RenderTargets targets;
+  targets.width = buffer.width;
+  targets.height = buffer.height;
+  targets.colors = {{buffer.position.slice(0), false, {}},
+                    {buffer.words.slice(0), false, {}},
+                    {buffer.radiance.slice(0), false, {}}};
+  targets.depth = buffer.depth.slice(0);
+  targets.depth_format = buffer.depth.description().format;
+  targets.clear_depth = true;
+  targets.clear_stencil = true;
+
+  vulkan::GraphicsState state;
+  state.color_formats = {GeometryBuffer::position_format, GeometryBuffer::words_format,
+                         GeometryBuffer::radiance_format};
+  state.depth_format = targets.depth_format;
+  state.depth_test = true;
+
+  commands.begin_rendering(targets);
+  // The sky first, over everything: no clear is needed then.
+  vulkan::ProgramSource sky;
+  sky.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
+  state.depth_compare = VK_COMPARE_OP_ALWAYS;
+  commands.bind(pipelines.graphics(sky, state), frame_bindings);
+  commands.full_screen_triangle();
+
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
+  state.vertex_input = vulkan::VertexInput::surface;
+  state.depth_compare = VK_COMPARE_OP_GREATER;
+  state.depth_write = true;
+  const vulkan::Pipeline& pipeline = pipelines.graphics(source, state);
+  const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
+  const VkDeviceSize offsets[] = {0, 0};
+  vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
+  vkCmdBindIndexBuffer(commands.handle(), scene.index_buffer().handle(), 0, VK_INDEX_TYPE_UINT32);
+  vulkan::Bindings bindings = frame_bindings;
+
+  const auto& ranges = scene.ranges();
+  const auto visible = [&](const DrawRange& range) {
+    return may_touch(clip_from_world, range.low, range.high);
+  };
+  for (std::size_t i = 0; i < ranges.size();) {
+    const DrawRange& first = ranges[i];
+    if (!visible(first)) {
+      ++i;
+      continue;
+    }
+    std::uint32_t count = first.index_count;
+    std::size_t next = i + 1;
+    while (next < ranges.size() && ranges[next].material == first.material && visible(ranges[next]))
+      count += ranges[next++].index_count;
+    bindings.texture("surface_texture", scene.texture_of(first.material),
+                     vulkan::Sampling::linear_repeat);
+    commands.bind(pipeline, bindings);
+    commands.constants(first.material);
+    commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+    vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
+    i = next;
+  }
+  commands.end_rendering();
+}
+
+}  // namespace penumbra

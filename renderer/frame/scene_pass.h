@@ -1,0 +1,19 @@
+#pragma once
+
+#include "renderer/frame/geometry_buffer.h"
+#include "renderer/scene/gpu_scene.h"
+#include "renderer/vulkan/commands.h"
+
+namespace penumbra {
+
+/// Allocates the geometry buffer for this many samples; stencil only where asked for.
+GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger& ledger,
+                                    std::uint32_t width, std::uint32_t height, bool stencil);
+
+/// Draws the scene into the geometry buffer, with ambient and emitted light and the sky as
+/// radiance.
+void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+                   const GpuScene& scene, const GeometryBuffer& buffer,
+                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world);
+
+}  // namespace penumbra

@@ -1,0 +1,75 @@
+#include "renderer/frame/transforms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace penumbra {
+
+glm::dvec3 across(const glm::dvec3& direction, const glm::dvec3& wanted) {
+  const glm::dvec3 unit = glm::normalize(direction);
+  glm::dvec3 side = wanted - glm::dot(wanted, unit) * unit;
+  if (glm::length(side) < 1e-6 * std::max(1.0, glm::length(wanted))) {
+    const glm::dvec3 other = std::abs(unit.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
+    side = other - glm::dot(other, unit) * unit;
+  }
+  return glm::normalize(side);
+}
+
+glm::dmat4 view_from_world(const glm::dvec3& position, const glm::dvec3& forward,
+                           const glm::dvec3& up) {
+  const glm::dvec3 f = glm::normalize(forward);
+  const glm::dvec3 u = across(f, up);
+  const glm::dvec3 r = glm::cross(f, u);
+  glm::dmat4 view(1.0);
+  for (int i = 0; i < 3; ++i) {
+    view[i][0] = r[i];
+    view[i][1] = u[i];
+    view[i][2] = -f[i];
+  }
+  view[3] = glm::dvec4(-glm::dot(r, position), -glm::dot(u, position), glm::dot(f, position), 1.0);
+  return view;
+}
+
+glm::dmat4 clip_from_view_perspective(double vertical_fov, double aspect, double near_plane) {
+  const double f = 1.0 / std::tan(0.5 * vertical_fov * glm::pi<double>() / 180.0);
+  glm::dmat4 clip(0.0);
+  clip[0][0] = f / aspect;
+  clip[1][1] = -f;
+  clip[2][3] = -1.0;
+  clip[3][2] = near_plane;
+  return clip;
+}
+
+glm::dmat4 clip_from_view_orthographic(double width, double height, double near_plane,
+                                       double far_plane) {
+  glm::dmat4 clip(1.0);
+  clip[0][0] = 2.0 / width;
+  clip[1][1] = -2.0 / height;
+  clip[2][2] = 1.0 / (far_plane - near_plane);
+  clip[3][2] = far_plane / (far_plane - near_plane);
+  return clip;
+}
+
+CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,
+                               double scene_radius) {
+  CameraMatrices matrices;
+  matrices.position = camera.position - origin;
+  matrices.direction = glm::normalize(camera.target - camera.position);
+  const glm::dmat4 view = view_from_world(matrices.position, matrices.direction, camera.up);
+  if (camera.projection == Projection::perspective) {
+    matrices.clip_from_world =
+        clip_from_view_perspective(camera.vertical_fov, aspect, camera.near_plane) * view;
+  } else {
+    const double reach =
+        glm::length(matrices.position) + 2.0 * scene_radius + camera.near_plane + 1.0;
+    matrices.clip_from_world =
+        clip_from_view_orthographic(camera.orthographic_height * aspect, camera.orthographic_height,
+                                    camera.near_plane, reach) *
+        view;
+  }
+  matrices.world_from_clip = glm::inverse(matrices.clip_from_world);
+  return matrices;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,127 @@
+#include "renderer/shadow_maps/depth_map.h"
+
+#include <algorithm>
+
+namespace penumbra::shadow_maps {
+
+std::vector<Parameter> map_parameters() {
+  std::vector<Parameter> list;
+  Parameter map_size;
+  map_size.name = "map_size";
+  map_size.type = ParameterType::integer;
+  map_size.default_value = std::int64_t{512};
+  map_size.minimum = 1;
+  map_size.maximum = 16384;
+  map_size.scale = ParameterScale::logarithmic;
+  map_size.unit = "texels";
+  map_size.meaning = "Width and height of the shadow map.";
+  list.push_back(map_size);
+
+  Parameter layout;
+  layout.name = "layout";
+  layout.type = ParameterType::choice;
+  layout.choices = {"single"};
+  layout.default_value = std::string("single");
+  layout.meaning = "Where depth lives: one map over the light's cone.";
+  layout.variant = true;
+  list.push_back(layout);
+
+  Parameter strategy;
+  strategy.name = "bias_strategy";
+  strategy.type = ParameterType::choice;
+  strategy.choices = {"constant", "slope", "normal-offset", "receiver-plane", "back-faces"};
+  strategy.default_value = std::string("slope");
+  strategy.meaning =
+      "How self-shadowing is prevented. constant: the map is moved away from the light by bias. "
+      "slope: "
+      "also by the depth that the caster spans over the kernel. normal-offset: the receiver is "
+      "moved "
+      "along its normal. receiver-plane: every texel is compared with the receiver's plane at its "
+      "own "
+      "place. back-faces: only faces turned away from the light are drawn.";
+  strategy.variant = true;
+  list.push_back(strategy);
+
+  Parameter bias;
+  bias.name = "bias";
+  bias.type = ParameterType::real;
+  bias.default_value = 0.005;
+  bias.minimum = 0.0;
+  bias.maximum = 1000.0;
+  bias.unit = "m";
+  bias.meaning = "Distance along the light's axis that is granted to every comparison.";
+  list.push_back(bias);
+
+  Parameter slope_scale;
+  slope_scale.name = "slope_scale";
+  slope_scale.type = ParameterType::real;
+  slope_scale.default_value = 1.0;
+  slope_scale.minimum = 0.0;
+  slope_scale.maximum = 16.0;
+  slope_scale.meaning =
+      "Factor of the part of the bias that follows texel size, kernel and slope; 1 covers the "
+      "kernel.";
+  list.push_back(slope_scale);
+  return list;
+}
+
+void DepthMap::draw(PrepareContext& context, double kernel_radius) {
+  const ParameterValues& parameters = context.input.parameters;
+  const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
+  // Room for the kernel at the borders, up to a quarter of the map.
+  const double guard = std::min((kernel_radius + 1.0) / size, 0.25);
+  const LightView view = fit_light_view(context.scene, context.light, guard);
+  if (!image_) {
+    vulkan::ImageDescription description;
+    description.format = VK_FORMAT_D32_SFLOAT;
+    description.width = description.height = size;
+    description.layers = static_cast<std::uint32_t>(view.faces.size());
+    description.array_view = true;
+    description.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    image_ = vulkan::Image(context.device, context.memory, "shadow map", description);
+  }
+  shader::MapData data{};
+  std::copy(view.faces.begin(), view.faces.end(), data.faces);
+  data.range = {view.near_distance, view.far_distance,
+                1.0f / (view.far_distance - view.near_distance),
+                static_cast<float>(view.faces.size())};
+  data.texel = {static_cast<float>(size), view.texel_at_unit_distance / static_cast<float>(size),
+                static_cast<float>(real_of(parameters, "bias")),
+                static_cast<float>(real_of(parameters, "slope_scale"))};
+  data.filter_size = {static_cast<float>(kernel_radius), 0.0f, 0.0f, 0.0f};
+  constants_ = context.constants.push(data);
+
+  CasterProgram program;
+  program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/depth_map.vert"},
+                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/depth_map.frag"}};
+  program.preamble = context.declarations;
+  program.state.depth_format = VK_FORMAT_D32_SFLOAT;
+  program.state.depth_test = program.state.depth_write = true;
+  program.state.depth_compare = VK_COMPARE_OP_LESS;
+  program.state.depth_clamp = true;
+  if (choice_of(parameters, "bias_strategy") == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
+
+  context.pass("shadow map", [&](vulkan::Commands& commands) {
+    for (std::uint32_t face = 0; face < view.faces.size(); ++face) {
+      vulkan::RenderTargets targets;
+      targets.width = targets.height = size;
+      targets.depth = image_.slice(face);
+      targets.depth_format = VK_FORMAT_D32_SFLOAT;
+      targets.clear_depth = true;
+      targets.depth_clear_value = 1.0f;
+      vulkan::Bindings bindings;
+      bindings.buffer("MapFaceBlock", context.constants.push(view.faces[face]));
+      bindings.buffer("MapBlock", constants_);
+      commands.begin_rendering(targets);
+      context.draw_casters(commands, program, bindings, view.faces[face].clip_from_world);
+      commands.end_rendering();
+    }
+  });
+}
+
+void DepthMap::bind(vulkan::Bindings& bindings, vulkan::Sampling sampling) const {
+  bindings.texture("shadow_map", image_, sampling);
+  bindings.buffer("MapBlock", constants_);
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,30 @@
+// Linear depth, computed anew for every fragment: interpolated depth would be wrong inside triangles.
+#include "renderer/shaders/caster.glsl"
+
+layout(std140) uniform MapFaceBlock { MapFace face; };
+layout(std140) uniform MapBlock { MapData map; };
+
+layout(location = 0) in vec3 world_position;
+#ifdef MASKED
+layout(location = 1) in vec2 surface_uv;
+layout(location = 2) in float vertex_alpha;
+layout(push_constant) uniform DrawBlock { uint material; } draw;
+#endif
+
+void main() {
+#ifdef MASKED
+  MaterialData material = materials[draw.material];
+  float alpha = material.base_color.a * vertex_alpha;
+  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
+  if (alpha < material.surface.z) discard;
+#endif
+  float distance = dot(world_position - face.origin.xyz, face.forward.xyz);
+  float bias = map.texel.z;
+  if (parameter_bias_strategy == bias_strategy_slope) {
+    // Depth that this facet spans over the kernel; a facet seen edge-on is not followed to infinity.
+    float texel = map.texel.y * (face.origin.w > 0.5 ? distance : 1.0);
+    float span = abs(dFdx(distance)) + abs(dFdy(distance));
+    bias += map.texel.w * (0.5 + map.filter_size.x) * min(span, 10.0 * texel);
+  }
+  gl_FragDepth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
+}
