@@ -25,8 +25,14 @@ export async function load_pictures(page, strings) {
   return new Map(pairs);
 }
 
-/// Fetches ahead of time; whether that worked is found out when the page is shown.
+let ahead = [];
+
+/// Fetches ahead of time, so that a page opens even where the network is gone by then. Whether that
+/// worked is found out when the page is shown.
 export function load_ahead(page) {
-  for (const { url } of page?.images ?? []) new Image().src = url;
-  if (page?.reference) new Image().src = page.reference.url;
+  ahead = [...(page?.images ?? []), page?.reference].filter(Boolean).map(({ url }) => {
+    const image = new Image();
+    image.src = url;
+    return image;  // held on to, so that the browser keeps it
+  });
 }

@@ -1,0 +1,97 @@
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { violations } from "./axe.js";
+import { launch, Person } from "./person.js";
+import { Server } from "./server.js";
+import { small_study } from "./study.js";
+
+const study = "lab";
+let server;
+let browser;
+let page;
+
+before(async () => {
+  server = await Server.start();
+  await server.call("POST", "/api/v1/studies", small_study(study));
+  browser = await launch();
+  page = await (await browser.newContext({ viewport: { width: 1440, height: 1000 } })).newPage();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+test("without the token the laboratory stays shut", async () => {
+  const context = await browser.newContext();
+  const reply = await (await context.newPage()).goto(`${server.base}/lab`);
+  assert.equal(reply.status(), 401);
+  await context.close();
+});
+
+test("a researcher publishes a study, people answer, and the means appear", async () => {
+  await page.goto(`${server.base}/lab?token=${server.token}`);
+  assert.ok(!page.url().includes(server.token));
+  await page.getByRole("heading", { name: "Studies" }).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await page.locator(".studies .card", { hasText: study }).getByRole("link").click();
+  await page.getByRole("button", { name: "Render the pictures and publish" }).click();
+  const link = page.getByRole("link", { name: new RegExp(`/s/${study}$`) });
+  await link.waitFor({ timeout: 120_000 });
+  assert.equal(await link.getAttribute("href"), `${server.base}/s/${study}`);
+  for (let each = 0; each < 2; ++each) {
+    const person = await Person.arrive(browser, server, study);
+    await person.enter();
+    await person.answer({ A: 0, B: 1, C: 2 });
+    await person.see_page(1);
+    await person.answer({ A: 0, B: 1, C: 2 });
+    await person.completion_code();
+    await person.context.close();
+  }
+  await page.getByRole("heading", { name: "All scenes" }).waitFor({ timeout: 20_000 });
+  assert.equal(await page.locator(".figures dd").first().innerText(), "2");
+  const results = await server.call("GET", `/api/v1/studies/${study}/results.json`);
+  const overall = results.included_sets.all.overall.techniques;
+  const shown = await page.locator(".result").first().locator("tbody tr").evaluateAll((rows) =>
+    rows.map((row) => [...row.cells].map((cell) => cell.innerText.trim()).filter(Boolean)));
+  assert.equal(shown.length, 3);
+  for (const [index, technique] of overall.entries()) {
+    assert.ok(shown[index].includes(technique.weighted_mean_rank.toFixed(2)), `${shown[index]} has no ${technique.weighted_mean_rank}`);
+  }
+  assert.deepEqual(await violations(page), []);
+});
+
+test("a closed study lets nobody in", async () => {
+  await page.getByRole("button", { name: "Close the study" }).click();
+  await page.getByText("Closed", { exact: true }).waitFor();
+  const person = await Person.arrive(browser, server, study);
+  await person.page.getByText("This survey is not open at the moment.").waitFor();
+  await person.context.close();
+});
+
+test("on the bench a picture stands beside the reference and its error, with numbers", async () => {
+  await page.getByRole("link", { name: "Bench" }).click();
+  await page.getByLabel("Scene", { exact: true }).selectOption("half-plane");
+  await page.getByLabel("Technique", { exact: true }).selectOption("shadow-map");
+  await page.getByLabel("Width and height, pixels").fill("96");
+  await page.getByLabel(/^Light samples/).fill("16");
+  await page.getByRole("button", { name: "Render" }).click();
+  await page.locator(".bench-result figure").nth(2).waitFor({ timeout: 120_000 });
+  const sizes = await page.locator(".bench-result img").evaluateAll(async (all) => {
+    await Promise.all(all.map((image) => image.decode()));
+    return all.map((image) => image.naturalWidth);
+  });
+  assert.deepEqual(sizes, [96, 96, 96]);
+  const error = await page.getByRole("row", { name: /rms_y/ }).locator("td").innerText();
+  assert.ok(Number(error) > 0, error);
+  assert.match(await page.getByRole("row", { name: /Frame time, median/ }).locator("td").innerText(), /^[\d.]+ ms$/);
+  assert.deepEqual(await violations(page), []);
+});
+
+test("what the server refuses is said in words at the field concerned", async () => {
+  await page.getByLabel("Width and height, pixels").evaluate((field) => (field.max = ""));
+  await page.getByLabel("Width and height, pixels").fill("100000");
+  await page.getByRole("button", { name: "Render" }).click();
+  await page.locator(".bench-form .problems:not(:empty)").waitFor();
+  assert.match(await page.locator(".bench-form .problems").innerText(), /width/);
+});
