@@ -11,7 +11,7 @@
 
 namespace penumbra::server {
 
-/// Where a render stands; `to_json` gives the body of GET /api/v1/renders/{id} (contract).
+/// Where a render stands.
 struct RenderRecord {
   std::string id;               ///< hash of the canonical request: also cache key and ETag
   std::string status;           ///< queued, running, done, failed, cancelled
@@ -23,6 +23,9 @@ struct RenderRecord {
   nlohmann::json quality;       ///< null unless measured
   std::vector<std::string> notes;
 };
+
+/// The record as JSON (contract: GET /api/v1/renders/{id}), without the links of a front end.
+nlohmann::json record_body(const RenderRecord& record);
 
 /// Renders on worker processes with a cache of artefacts by content. Thread-safe. Knows no HTTP.
 class RenderService {

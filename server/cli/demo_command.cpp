@@ -1,0 +1,172 @@
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "renderer/embedded_file.h"
+#include "renderer/error.h"
+#include "server/cli/progress.h"
+#include "server/cli/session.h"
+#include "server/cli/table.h"
+#include "server/http/documents.h"
+#include "server/jobs/durable_file.h"
+#include "server/jobs/render_service.h"
+#include "study/study.h"
+
+namespace penumbra::server::cli {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct Options {
+  fs::path study;
+  RenderServiceOptions service;
+  fs::path pictures;
+};
+
+struct Cell {
+  std::string page;
+  std::string picture;
+  std::string label;
+  std::string id;
+  json cost;
+  json quality;
+};
+
+study::Study read_study(const fs::path& file) {
+  if (file.empty()) return study::parse_study(std::string(http::embedded_studies().front().text));
+  const auto text = read_whole(file);
+  if (!text) throw unreadable("cannot read " + file.string(), "study");
+  return study::parse_study(*text);
+}
+
+/// Asks for every picture, one after the other: each is measured while nothing else draws.
+std::vector<Cell> draw_all(const study::Study& study, RenderService& service, double deadline_s) {
+  std::vector<Cell> cells;
+  std::vector<json> requests;
+  for (const study::Page& page : study.pages) {
+    const study::PageRenders renders = study::page_renders(study, page);
+    for (std::size_t i = 0; i < page.pictures.size(); ++i) {
+      cells.push_back({page.id, page.pictures[i].id, page.pictures[i].label, {}, {}, {}});
+      requests.push_back(renders.pictures[i]);
+    }
+  }
+  Progress progress("pictures of " + study.id);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    Cell& cell = cells[i];
+    const auto show = [&](double part) {
+      progress.show((static_cast<double>(i) + part) / static_cast<double>(cells.size()),
+                    cell.page + ", " + cell.picture);
+    };
+    requests[i]["measure"] = true;
+    RenderRecord record = service.submit(requests[i]);
+    while (record.status == "queued" || record.status == "running") {
+      show(record.progress);
+      record = service.wait_change(record.id, record, deadline_s).value_or(record);
+    }
+    if (record.status != "done")
+      throw Error(record.error.is_null() ? "internal" : record.error.value("code", "internal"),
+                  cell.page + ", " + cell.picture + ": " +
+                      (record.error.is_null() ? record.status : record.error.value("message", "")));
+    cell.id = record.id;
+    cell.cost = record.cost;
+    cell.quality = record.quality;
+  }
+  return cells;
+}
+
+std::string table_of(const std::vector<Cell>& cells,
+                     const std::function<std::string(const Cell&)>& value) {
+  std::vector<std::string> pages;
+  std::vector<std::string> pictures;
+  std::map<std::pair<std::string, std::string>, std::string> values;
+  std::map<std::string, std::string> labels;
+  const auto add_once = [](std::vector<std::string>& list, const std::string& name) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  };
+  for (const Cell& cell : cells) {
+    add_once(pages, cell.page);
+    add_once(pictures, cell.picture);
+    values[{cell.page, cell.picture}] = value(cell);
+    labels[cell.picture] = cell.label;
+  }
+  std::vector<std::string> header{"technique"};
+  header.insert(header.end(), pages.begin(), pages.end());
+  Table table(header);
+  for (const std::string& picture : pictures) {
+    std::vector<std::string> row{picture == labels[picture] ? picture
+                                                            : picture + " (" + labels[picture] + ")"};
+    for (const std::string& page : pages) {
+      const auto found = values.find({page, picture});
+      row.push_back(found == values.end() ? "-" : found->second);
+    }
+    table.add(row);
+  }
+  return table.text();
+}
+
+/// Copies of the pictures under names for people.
+void write_pictures(const std::vector<Cell>& cells, RenderService& service, const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const Cell& cell : cells)
+    for (const auto& [artefact, suffix] :
+         std::map<std::string, std::string>{{"image.png", ""}, {"error.png", "-error"}})
+      if (const auto bytes = service.artefact(cell.id, artefact))
+        write_durably(folder / (cell.page + "-" + cell.picture + suffix + ".png"),
+                      folder / ".new", *bytes);
+}
+
+int demonstrate(const Session& session, const Options& options) {
+  const study::Study study = read_study(options.study);
+  const auto service = make_render_service(options.service);
+  const std::vector<Cell> cells = draw_all(study, *service, options.service.deadline_s);
+  const fs::path folder =
+      options.pictures.empty() ? options.service.data / "pictures" : options.pictures;
+  write_pictures(cells, *service, folder);
+  const json device = service->statistics().at("device");
+  service->drain(0.0);
+
+  json list = json::array();
+  for (const Cell& cell : cells)
+    list.push_back({{"scene", cell.page},
+                    {"picture", cell.picture},
+                    {"id", cell.id},
+                    {"cost", cell.cost},
+                    {"quality", cell.quality}});
+  const std::string text =
+      "rms_y: error against the converged reference, 0..255\n" +
+      table_of(cells, [](const Cell& c) { return number(c.quality.at("rms_y"), 2); }) +
+      "\nms per frame on " + device.value("name", "this device") + "\n" +
+      table_of(cells,
+               [](const Cell& c) { return number(c.cost.at("frame_ms").at("median"), 1); }) +
+      "\npictures and error maps: " + folder.string() + "\n";
+  session.print({{"study", study.id}, {"device", device}, {"pictures", list},
+                 {"folder", folder.string()}},
+                text);
+  return 0;
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  options->service.data = "data";
+  CLI::App* command =
+      app.add_subcommand("demo", "Draw and measure the pictures of a study, print the error table");
+  command->add_option("--study", options->study, "Study file; by default the one that ships")
+      ->check(CLI::ExistingFile);
+  command->add_option("--data", options->service.data, "Folder of everything the server keeps")
+      ->capture_default_str();
+  command->add_option("--device", options->service.device,
+                      "Vulkan device: part of its name, or its index");
+  command->add_option("--pictures", options->pictures,
+                      "Folder for the pictures; by default pictures in the data folder");
+  add_json_flag(*command, session);
+  command->callback([options, &session] {
+    session.action = [options, &session] { return demonstrate(session, *options); };
+  });
+}
+
+}  // namespace penumbra::server::cli
