@@ -1,0 +1,232 @@
+// What every technique must do, whatever its family. A technique that is added to its folder is
+// tested here without a line being written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "renderer/error.h"
+#include "renderer/metrics/metrics.h"
+#include "renderer/render.h"
+#include "scenes/library.h"
+#include "techniques/presets.h"
+#include "techniques/registry.h"
+#include "tests/conformance/scenes.h"
+
+namespace penumbra::techniques {
+TechniqueDescription describe_template();
+}
+
+namespace penumbra {
+namespace {
+
+using test::box_on_ground;
+using test::covered_ground;
+using test::open_ground;
+
+const std::vector<TechniqueDescription>& subjects() {
+  static const std::vector<TechniqueDescription> list = [] {
+    auto all = techniques::all();
+    auto example = techniques::finish_descriptions({techniques::describe_template()});
+    example.front().files = all.front().files;
+    all.push_back(example.front());
+    return all;
+  }();
+  return list;
+}
+
+RenderRequest request_for(const TechniqueDescription& technique, Scene scene,
+                          std::uint32_t size = 64) {
+  RenderRequest request;
+  request.scene = std::make_shared<const Scene>(std::move(scene));
+  request.technique = &technique;
+  request.width = request.height = size;
+  request.light_samples = 32;
+  request.visibility = true;
+  return request;
+}
+
+/// One renderer under the validation layer for all cases: any message fails the render it belongs
+/// to.
+Renderer& renderer() {
+  static Renderer shared({.device = "", .validation = true});
+  return shared;
+}
+
+class Conformance : public testing::TestWithParam<std::size_t> {
+ protected:
+  const TechniqueDescription& technique() const { return subjects()[GetParam()]; }
+  bool casts_shadows() const { return technique().family != "none"; }
+};
+
+double mean_judged(const RenderResult& result) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < result.visibility.pixels.size(); ++i) {
+    if (result.judged.pixels[i] < 0.5f) continue;
+    sum += static_cast<double>(result.visibility.pixels[i]);
+    weight += 1.0;
+  }
+  EXPECT_GT(weight, 100.0) << "the scene shows too little";
+  return sum / weight;
+}
+
+TEST_P(Conformance, an_open_point_is_lit) {
+  EXPECT_NEAR(mean_judged(renderer().render(request_for(technique(), open_ground()))), 1.0, 1e-6);
+}
+
+TEST_P(Conformance, an_enclosed_point_is_dark) {
+  const double mean = mean_judged(renderer().render(request_for(technique(), covered_ground())));
+  EXPECT_NEAR(mean, casts_shadows() ? 0.0 : 1.0, 0.01);
+}
+
+TEST_P(Conformance, visibility_is_finite_and_between_0_and_1) {
+  const RenderResult result = renderer().render(request_for(technique(), box_on_ground()));
+  EXPECT_EQ(result.non_finite_pixels, 0u);
+  EXPECT_THAT(result.visibility.pixels,
+              testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f + 1e-6f))));
+}
+
+TEST_P(Conformance, the_ends_of_every_parameter_give_a_picture_or_a_typed_error) {
+  for (const Parameter& parameter : technique().parameters) {
+    std::vector<ParameterValue> ends;
+    if (parameter.type == ParameterType::boolean) {
+      ends = {true, false};
+    } else if (parameter.type == ParameterType::choice) {
+      for (const std::string& choice : parameter.choices) ends.emplace_back(choice);
+    } else if (parameter.type == ParameterType::integer) {
+      ends = {static_cast<std::int64_t>(parameter.minimum),
+              static_cast<std::int64_t>(parameter.maximum)};
+    } else {
+      ends = {parameter.minimum, parameter.maximum};
+    }
+    for (const ParameterValue& end : ends) {
+      SCOPED_TRACE(parameter.name + " = " + to_text(end));
+      RenderRequest request = request_for(technique(), box_on_ground(), 16);
+      request.parameters[parameter.name] = end;
+      try {
+        const RenderResult result = renderer().render(request);
+        EXPECT_EQ(result.picture.width, 16u);
+      } catch (const Error& error) {
+        // Too large for the device, or not served: said so, and the renderer lives on.
+        EXPECT_THAT(error.code, testing::AnyOf("unsupported", "bad_value", "device"));
+        EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("validation")));
+      }
+    }
+  }
+}
+
+TEST_P(Conformance, the_same_request_gives_the_same_bytes_whatever_was_drawn_before) {
+  const RenderRequest request = request_for(technique(), box_on_ground());
+  const RenderResult first = renderer().render(request);
+  const RenderResult again = renderer().render(request);
+  EXPECT_EQ(first.picture.pixels, again.picture.pixels);
+  EXPECT_EQ(first.visibility.pixels, again.visibility.pixels);
+
+  for (const TechniqueDescription& other : subjects())
+    if (other.id != technique().id) {
+      renderer().render(request_for(other, open_ground(), 32));
+      break;
+    }
+  EXPECT_EQ(renderer().render(request).picture.pixels, first.picture.pixels);
+
+  Renderer alone({.device = "", .validation = false});
+  EXPECT_EQ(alone.render(request).picture.pixels, first.picture.pixels);
+}
+
+TEST_P(Conformance, two_cameras_agree_on_one_light) {
+  Scene scene = box_on_ground();
+  Camera moved = scene.cameras[0];
+  moved.name = "moved";
+  // 8 of 64 pixels of a picture 2 m wide.
+  moved.position.x += 0.25;
+  moved.target.x += 0.25;
+  scene.cameras.push_back(moved);
+  RenderRequest request = request_for(technique(), scene);
+  const RenderResult from_first = renderer().render(request);
+  request.camera = "moved";
+  const RenderResult from_second = renderer().render(request);
+  std::size_t compared = 0;
+  std::size_t different = 0;
+  for (std::uint32_t y = 0; y < 64; ++y)
+    for (std::uint32_t x = 8; x < 64; ++x) {
+      if (from_first.judged.at(x, y, 0) < 0.5f || from_second.judged.at(x - 8, y, 0) < 0.5f)
+        continue;
+      ++compared;
+      const float difference =
+          from_first.visibility.at(x, y, 0) - from_second.visibility.at(x - 8, y, 0);
+      different += std::abs(difference) > 0.02f;
+    }
+  EXPECT_GT(compared, 2000u);
+  // A sample on the very border of a shadow may fall to either side by rounding.
+  EXPECT_LE(different, compared / 200);
+}
+
+TEST_P(Conformance, is_nearer_the_reference_than_no_shadows) {
+  if (!casts_shadows()) {
+    EXPECT_EQ(technique().id, "none");
+    return;
+  }
+  const auto reference = techniques::resolve("reference");
+  const auto none = techniques::resolve("none");
+  const Image8 truth =
+      renderer().render(request_for(*reference.technique, box_on_ground())).picture;
+  const Image8 unshadowed =
+      renderer().render(request_for(*none.technique, box_on_ground())).picture;
+  const Image8 picture = renderer().render(request_for(technique(), box_on_ground())).picture;
+  EXPECT_LT(metrics::rms_y(picture, truth), 0.5 * metrics::rms_y(unshadowed, truth));
+}
+
+TEST_P(Conformance, comes_as_near_the_reference_as_its_folder_promises) {
+  std::ifstream file(std::string(PENUMBRA_SOURCE_DIR) + "/techniques/" + technique().id +
+                     "/expected.json");
+  ASSERT_TRUE(file) << "techniques/" << technique().id << "/expected.json is missing";
+  const auto expected = nlohmann::json::parse(file);
+  const auto reference = techniques::resolve("reference");
+  for (const auto& [id, bounds] : expected.items()) {
+    SCOPED_TRACE(id);
+    RenderRequest request = request_for(*reference.technique, open_ground(), 200);
+    request.scene = scenes::load(id);
+    request.light_samples = 64;
+    request.visibility = false;
+    const Image8 truth = renderer().render(request).picture;
+    request.technique = &technique();
+    EXPECT_LE(metrics::rms_y(renderer().render(request).picture, truth),
+              bounds.at("rms_y_max").get<double>());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Conformance, testing::Range<std::size_t>(0, subjects().size()),
+                         [](const auto& info) {
+                           std::string name = subjects()[info.param].id;
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
+
+// The page of a technique lists its parameters; a default that changed in the code only is found
+// here.
+TEST_P(Conformance, the_page_names_every_parameter_with_its_default) {
+  std::ifstream file(std::string(PENUMBRA_SOURCE_DIR) + "/techniques/" + technique().id +
+                     "/README.md");
+  ASSERT_TRUE(file) << "techniques/" << technique().id << "/README.md is missing";
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  for (std::size_t at = page.find("\n| `"); at != std::string::npos;
+       at = page.find("\n| `", at + 1)) {
+    const std::string row = page.substr(at + 1, page.find('\n', at + 1) - at - 1);
+    const std::string name = row.substr(3, row.find('`', 3) - 3);
+    const auto& declared = technique().parameters;
+    const auto found =
+        std::find_if(declared.begin(), declared.end(),
+                     [&](const Parameter& parameter) { return parameter.name == name; });
+    if (found == declared.end()) continue;  // tables of presets and diagnostics use the same form
+    EXPECT_THAT(row, testing::HasSubstr(to_text(found->default_value))) << row;
+  }
+  for (const Parameter& parameter : technique().parameters)
+    if (parameter.name != "gamma" && technique().id != "template")
+      EXPECT_THAT(page, testing::HasSubstr("`" + parameter.name + "`"));
+}
+
+}  // namespace
+}  // namespace penumbra
