@@ -48,8 +48,8 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
     await person.completion_code();
     await person.context.close();
   }
-  await page.getByRole("heading", { name: "All scenes" }).waitFor({ timeout: 20_000 });
-  assert.equal(await page.locator(".figures dd").first().innerText(), "2");
+  await page.locator(".figures dd").first().filter({ hasText: /^2$/ }).waitFor();
+  await page.getByRole("heading", { name: "All scenes" }).waitFor();
   const results = await server.call("GET", `/api/v1/studies/${study}/results.json`);
   const overall = results.included_sets.all.overall.techniques;
   const shown = await page.locator(".result").first().locator("tbody tr").evaluateAll((rows) =>

@@ -71,6 +71,16 @@ TEST(Report, TheSyntheticSurveyComesOutAsInREndToEnd) {
     expect_close(std::abs(found["t"].get<double>()), std::abs(row["t"].get<double>()), 1e-6, name);
     expect_close(found["p_bonferroni"], row["p_bonferroni"], 1e-6, name);
   }
+  const json& fit = expected["pl_npseudo_0"];
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const json& worth =
+        entry(scene["plackett_luce"]["worths"], "technique", std::string(1, items[i]));
+    EXPECT_NEAR(worth["log_worth"].get<double>(), fit["log_worth_centered"][i].get<double>(), 1e-5);
+    EXPECT_NEAR(worth["se"].get<double>(), fit["se_centered"][i].get<double>(), 1e-5);
+    EXPECT_NEAR(worth["quasi_se"].get<double>(), fit["quasi_se"][i].get<double>(), 1e-4);
+  }
+  EXPECT_NEAR(scene["plackett_luce"]["log_likelihood"].get<double>(), fit["loglik"].get<double>(),
+              1e-6);
   std::vector<std::vector<std::string>> subsets = scene["subsets"];
   for (auto& subset : subsets) std::sort(subset.begin(), subset.end());
   std::sort(subsets.begin(), subsets.end());
