@@ -8,7 +8,7 @@ const glide_ms = 180;
 export class Board {
   /// `on_change` is told after every move, `on_enlarge(slot)` opens the viewer, `announce(text)`
   /// speaks to screen readers.
-  constructor({ arrangement, pictures, labels, strings, reference, on_change, on_enlarge, announce }) {
+  constructor({ arrangement, pictures, labels, strings, on_change, on_enlarge, announce }) {
     Object.assign(this, { arrangement, pictures, labels, strings, on_change, on_enlarge, announce });
     this.picked = null;
     this.items = new Map([...pictures.values()].map((picture) => [picture.slot, this.make_picture(picture)]));
@@ -19,9 +19,6 @@ export class Board {
       h("h2", { id: "tray-heading" }, strings.tray), this.tray_list, this.tray_note);
     this.rack = h("section", { class: "rack", "aria-labelledby": "rack-heading" },
       h("h2", { id: "rack-heading", class: "unseen" }, strings.shelves),
-      reference ? h("figure", { class: "true-picture" },
-        h("img", { src: reference.url, alt: strings.reference }),
-        h("figcaption", {}, strings.reference)) : null,
       h("ol", { class: "shelves", role: "list" }, this.shelves));
     this.tray.addEventListener("click", (event) => this.clicked_on(event, null));
     this.refresh();
@@ -57,8 +54,8 @@ export class Board {
     const last = this.arrangement.lowest;
     const label = shelf === 0 ? this.labels.most : shelf === last ? this.labels.least : "";
     const place = h("button", { type: "button", class: "place" },
-      h("span", { class: "label", "aria-hidden": "true" }, label),
-      h("span", { class: "offer", "aria-hidden": "true" }, this.strings.put_here));
+      h("span", { class: "label" }, label), " ", h("span", { class: "offer" }, this.strings.put_here), " ",
+      h("span", { class: "unseen" }));
     const element = h("li", { class: "shelf", data: { shelf: String(shelf) } }, place, h("ul", { class: "pictures" }));
     element.classList.toggle("end", label !== "");
     element.addEventListener("click", (event) => this.clicked_on(event, shelf));
@@ -162,9 +159,10 @@ export class Board {
       const here = arrangement.on(shelf);
       this.fill(element.querySelector(".pictures"), here);
       element.classList.toggle("filled", here.length > 0);
-      element.querySelector(".place").setAttribute("aria-label", this.picked === null
-        ? strings.shelf_holds(this.shelf_text(shelf), here.map((slot) => this.pictures.get(slot).name))
-        : strings.put_on(this.pictures.get(this.picked).name, this.shelf_text(shelf)));
+      const name = strings.shelf(shelf, arrangement.slots.length);
+      element.querySelector(".place .unseen").textContent = this.picked === null
+        ? strings.shelf_holds(name, here.map((slot) => this.pictures.get(slot).name))
+        : `${this.pictures.get(this.picked).name}, ${name}`;
     }
     this.rack.classList.toggle("picking", this.picked !== null);
     this.tray.classList.toggle("picking", this.picked !== null);

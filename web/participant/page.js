@@ -8,6 +8,8 @@ import { DigitBoard } from "./numeric.js";
 import { Observations } from "./observations.js";
 import { Viewer } from "./viewer.js";
 
+const reference_slot = "reference";  // in the viewer, beside the slots of the pictures to rank
+
 export class RankingPage {
   /// `page` as the server describes it, `pictures` loaded; `kept` is what a reload or an earlier
   /// visit left: {shelves|digits, all_same, difficulty, observations}.
@@ -21,7 +23,7 @@ export class RankingPage {
       this.digits = new DigitBoard({ ...shared, digits: kept.digits ?? {} });
     } else {
       this.arrangement = new Arrangement([...pictures.keys()], kept.shelves, kept.all_same ?? false);
-      this.board = new Board({ ...shared, arrangement: this.arrangement, reference: page.reference, announce });
+      this.board = new Board({ ...shared, arrangement: this.arrangement, announce });
     }
     this.element = this.make(kept.difficulty ?? null);
     this.follow();
@@ -55,6 +57,10 @@ export class RankingPage {
         this.practice ? h("p", { class: "practice" }, h("strong", {}, strings.practice), ` ${strings.practice_text}`) : null,
         h("h1", { tabindex: "-1" }, this.page.question),
         this.digits ? null : h("details", { class: "ways" }, h("summary", {}, strings.how_heading), h("p", {}, strings.how_ways))),
+      this.page.reference ? h("figure", { class: "true-picture" },
+        h("button", { type: "button", class: "pick", on: { click: () => this.enlarge(reference_slot) } },
+          h("img", { src: this.page.reference.url, alt: strings.enlarge(strings.reference) })),
+        h("figcaption", {}, strings.reference)) : null,
       this.work);
   }
 
@@ -64,7 +70,12 @@ export class RankingPage {
   }
 
   enlarge(slot) {
-    this.viewer = new Viewer({ pictures: this.pictures, strings: this.strings,
+    const pictures = new Map(this.pictures);
+    if (this.page.reference) {
+      pictures.set(reference_slot, { ...this.page.reference, slot: reference_slot,
+        letter: this.strings.reference_short, name: this.strings.reference });
+    }
+    this.viewer = new Viewer({ pictures, strings: this.strings,
       on_flip: () => this.note("flipped"), on_show: () => this.note("enlarged") });
     this.viewer.open(slot);
   }

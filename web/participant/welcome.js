@@ -23,7 +23,9 @@ export function consent_view({ welcome, language, texts, agree, choose }) {
     try {
       await agree();
     } catch (error) {
-      problem.textContent = error.passing ? strings.unreachable : error.message;
+      if (error.field === "consent_version") location.reload();  // agreed to a text that has changed since
+      const full = error.status === 409 && error.field === "study";
+      problem.textContent = error.passing ? strings.unreachable : full ? strings.full : error.message;
     }
     start.disabled = false;
   } } }, strings.start);
