@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,21 +18,25 @@ struct ServeOptions {
   std::filesystem::path data = "data";
   std::string device;  ///< as RendererOptions::device
   unsigned workers = 1;
-  std::filesystem::path token_file;  ///< researcher's token; empty: data/researcher.token, made once
-  std::filesystem::path web;         ///< serve the pages from this folder instead of the built-in ones
-  std::string public_url;            ///< how browsers reach the server, e.g. https://study.example.org
-  unsigned queue_limit = 256;        ///< renders that may wait
+  std::filesystem::path
+      token_file;              ///< researcher's token; empty: data/researcher.token, made once
+  std::filesystem::path web;   ///< serve the pages from this folder instead of the built-in ones
+  std::string public_url;      ///< how browsers reach the server, e.g. https://study.example.org
+  unsigned queue_limit = 256;  ///< renders that may wait
   double render_deadline_s = 300.0;
   double drain_deadline_s = 30.0;  ///< after SIGTERM
   bool validation = false;
 };
+
+/// Called once the data folder is locked: nothing may touch it before.
+using MakeRenderService = std::function<std::unique_ptr<RenderService>()>;
 
 /// The running server, for embedding and tests: `serve` adds the render service and the signals.
 class Server {
  public:
   /// Locks the data folder, opens the database, binds both ports. Throws Error: bad_value naming
   /// `host` or `port`, conflict where another process owns the folder or the port.
-  Server(const ServeOptions& options, std::unique_ptr<RenderService> renders);
+  Server(const ServeOptions& options, const MakeRenderService& make_renders);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -51,8 +56,8 @@ class Server {
   std::unique_ptr<State> state;
 };
 
-/// `penumbra serve`: prints the participant's and the researcher's URLs and answers until SIGTERM or
-/// SIGINT. Returns the process's exit status.
+/// `penumbra serve`: prints the participant's and the researcher's URLs and answers until SIGTERM
+/// or SIGINT. Returns the process's exit status.
 int serve(const ServeOptions& options);
 
 }  // namespace penumbra::server::http

@@ -33,7 +33,8 @@ DataFolder::DataFolder(std::filesystem::path path) : root(std::move(path)) {
   std::error_code failure;
   if (!std::filesystem::exists(root, failure)) {
     std::filesystem::create_directories(root, failure);
-    if (failure) throw bad_value("data", "cannot create " + root.string() + ": " + failure.message());
+    if (failure)
+      throw bad_value("data", "cannot create " + root.string() + ": " + failure.message());
     std::filesystem::permissions(root, std::filesystem::perms::owner_all, failure);
   }
   const auto file = root / "lock";

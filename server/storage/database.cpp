@@ -10,7 +10,7 @@
 namespace penumbra::server::storage {
 namespace {
 
-constexpr int busy_ms = 3000;             // a lock held longer than this is somebody else's trouble
+constexpr int busy_ms = 3000;  // a lock held longer than this is somebody else's trouble
 constexpr std::size_t largest_batch = 64;  // changes that share one commit
 
 int number_of(const EmbeddedFile& file) {
@@ -152,8 +152,8 @@ Database::Lease::Lease(Database& owner_) : owner(owner_) {
   }
   if (!connection)
     owner.guarded([&] {
-      connection = std::make_unique<SQLite::Database>(owner.path.string(), SQLite::OPEN_READONLY,
-                                                      busy_ms);
+      connection =
+          std::make_unique<SQLite::Database>(owner.path.string(), SQLite::OPEN_READONLY, busy_ms);
     });
 }
 

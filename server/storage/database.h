@@ -1,5 +1,6 @@
 #pragma once
 
+#include <SQLiteCpp/Savepoint.h>
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <atomic>
@@ -19,11 +20,12 @@
 
 namespace penumbra::server::storage {
 
-/// The database of a data folder: one writing connection on one thread, and connections for reading.
+/// The database of a data folder: one writing connection on one thread, and connections for
+/// reading.
 ///
 /// Writes that wait at the same time share one transaction, each in its own savepoint, so that many
-/// people who answer at once pay for one sync of the disk and not for hundreds. `write` returns after
-/// the commit: what it returned from is durable (WAL, synchronous=FULL).
+/// people who answer at once pay for one sync of the disk and not for hundreds. `write` returns
+/// after the commit: what it returned from is durable (WAL, synchronous=FULL).
 ///
 /// Failures become penumbra::Error: `busy` (locked too long), `storage` (disk full, input/output,
 /// damage). After damage was seen, `healthy` is false and every write is refused.

@@ -66,7 +66,8 @@ std::vector<PlaceState> place_states(SQLite::Database& connection, const Partici
 
 void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fresh,
                      std::uint32_t quota) {
-  SQLite::Statement status(connection, "SELECT status FROM studies WHERE study = ? AND version = ?");
+  SQLite::Statement status(connection,
+                           "SELECT status FROM studies WHERE study = ? AND version = ?");
   status.bind(1, fresh.study);
   status.bind(2, fresh.version);
   if (!status.executeStep() || status.getColumn(0).getString() != "open")
@@ -223,7 +224,8 @@ nlohmann::json Participants::answer(
     const std::function<nlohmann::json(const std::string&, int)>& make_reply) {
   return database.write([&](SQLite::Database& connection) {
     SQLite::Statement known(
-        connection, "SELECT page, body, reply FROM answers WHERE participant = ? AND answer_id = ?");
+        connection,
+        "SELECT page, body, reply FROM answers WHERE participant = ? AND answer_id = ?");
     known.bind(1, participant.key);
     known.bind(2, fresh.answer_id);
     if (known.executeStep()) {
@@ -235,8 +237,7 @@ nlohmann::json Participants::answer(
     }
     check_answerable(connection, participant);
     const auto replaced = retire_current(connection, participant.key, fresh.page);
-    const auto reply =
-        make_reply(replaced, pages_answered(connection, participant.key) + 1);
+    const auto reply = make_reply(replaced, pages_answered(connection, participant.key) + 1);
     SQLite::Statement insert(connection,
                              "INSERT INTO answers (participant, page, answer_id, body, reply, "
                              "answered_at, is_current) VALUES (?, ?, ?, ?, ?, ?, 1)");
@@ -301,8 +302,7 @@ bool Participants::withdraw(const std::string& code, const std::string& now) {
 bool Participants::exclude(const std::string& study, const std::string& pseudonym,
                            const Exclusion& decision) {
   return database.write([&](SQLite::Database& connection) {
-    const auto person =
-        find_where(connection, "study = ? AND pseudonym = ?", study, pseudonym);
+    const auto person = find_where(connection, "study = ? AND pseudonym = ?", study, pseudonym);
     if (!person) return false;
     SQLite::Statement insert(connection,
                              "INSERT INTO exclusions (participant, excluded, reason, decided_at) "

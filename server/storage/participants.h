@@ -47,8 +47,8 @@ struct Exclusion {
 /// A participant with everything that exports need.
 struct ParticipantData {
   ParticipantRecord participant;
-  std::vector<AnswerRecord> answers;   ///< current ones, by page
-  std::vector<Exclusion> exclusions;   ///< in order; the last one counts
+  std::vector<AnswerRecord> answers;  ///< current ones, by page
+  std::vector<Exclusion> exclusions;  ///< in order; the last one counts
 
   bool excluded() const { return !exclusions.empty() && exclusions.back().excluded; }
 };
@@ -76,10 +76,9 @@ class Participants {
   /// A new answer_id replaces the page's current answer, which stays as history. Throws `conflict`
   /// after completion and where the study is closed. `make_reply` gets the answer_id of the answer
   /// replaced (empty: none) and the number of pages answered now.
-  nlohmann::json answer(
-      const ParticipantRecord& participant, const AnswerRecord& fresh,
-      const std::function<bool(const nlohmann::json&)>& same,
-      const std::function<nlohmann::json(const std::string&, int)>& make_reply);
+  nlohmann::json answer(const ParticipantRecord& participant, const AnswerRecord& fresh,
+                        const std::function<bool(const nlohmann::json&)>& same,
+                        const std::function<nlohmann::json(const std::string&, int)>& make_reply);
 
   /// Marks as completed once all `pages` have an answer (else `conflict`), with details about the
   /// person. Repeating changes nothing.

@@ -6,7 +6,8 @@ namespace penumbra::server::storage {
 namespace {
 
 constexpr const char* columns =
-    "study, version, status, document, hash, seed, pictures_done, pictures_total, error, created_at";
+    "study, version, status, document, hash, seed, pictures_done, pictures_total, error, "
+    "created_at";
 
 std::string select(const std::string& condition) {
   return std::string("SELECT ") + columns + " FROM studies " + condition;

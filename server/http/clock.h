@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace penumbra::server::http {
+
+/// UTC now, or `seconds` later, as 2026-01-31T23:59:59.123Z: text order is time order.
+std::string utc_now(double seconds = 0.0);
+
+}  // namespace penumbra::server::http

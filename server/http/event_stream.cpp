@@ -1,0 +1,28 @@
+#include "server/http/event_stream.h"
+
+namespace penumbra::server::http {
+
+bool EventSink::send(const std::string& event, const nlohmann::json& data) {
+  const std::string text =
+      "event: " + event +
+      "\ndata: " + data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n\n";
+  return sink.write(text.data(), text.size());
+}
+
+bool EventSink::keep_alive() {
+  constexpr std::string_view comment = ":\n\n";
+  return sink.write(comment.data(), comment.size());
+}
+
+void send_events(Call& call, std::function<bool(EventSink&)> next) {
+  call.response.status = 200;
+  call.response.set_header("X-Accel-Buffering", "no");  // nginx passes events on at once
+  call.response.set_chunked_content_provider(
+      "text/event-stream", [next = std::move(next)](std::size_t, httplib::DataSink& sink) {
+        EventSink events(sink);
+        if (!next(events)) sink.done();
+        return true;
+      });
+}
+
+}  // namespace penumbra::server::http

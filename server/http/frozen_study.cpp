@@ -1,0 +1,68 @@
+#include "server/http/frozen_study.h"
+
+#include "server/http/reply.h"
+#include "server/jobs/digest.h"
+
+namespace penumbra::server::http {
+namespace {
+
+const FrozenStudy::PagePictures& pictures_of(const FrozenStudy& frozen,
+                                             const study::PlannedPage& planned) {
+  return planned.kind == study::PageKind::practice ? frozen.practice : frozen.pages[planned.page];
+}
+
+FrozenStudy::PagePictures page_pictures(const study::Study& study, const study::Page& page,
+                                        const std::map<std::string, storage::FrozenPicture>& all) {
+  const auto renders = study::page_renders(study, page);
+  FrozenStudy::PagePictures found;
+  for (const auto& request : renders.pictures)
+    found.digests.push_back(all.at(request_key(request)).digest);
+  if (renders.shown_reference)
+    found.reference = all.at(request_key(*renders.shown_reference)).digest;
+  return found;
+}
+
+}  // namespace
+
+std::string request_key(const nlohmann::json& render_request) {
+  return sha256(render_request.dump());
+}
+
+std::string FrozenStudy::picture(const study::PlannedPage& planned, std::size_t slot) const {
+  if (slot >= planned.slots.size()) return {};
+  return pictures_of(*this, planned).digests.at(planned.slots[slot]);
+}
+
+std::string FrozenStudy::reference(const study::PlannedPage& planned) const {
+  return pictures_of(*this, planned).reference;
+}
+
+std::shared_ptr<const FrozenStudy> FrozenStudies::of(const storage::StudyRecord& record) {
+  const auto key = std::make_pair(record.id, record.version);
+  const std::lock_guard lock(mutex);
+  if (const auto found = known.find(key); found != known.end()) return found->second;
+  auto frozen = std::make_shared<FrozenStudy>();
+  frozen->study = study::parse_study(record.document);
+  frozen->hash = record.hash;
+  frozen->version = record.version;
+  frozen->seed = record.seed;
+  const auto pictures = studies.pictures(record.id, record.version);
+  for (const auto& page : frozen->study.pages)
+    frozen->pages.push_back(page_pictures(frozen->study, page, pictures));
+  if (frozen->study.practice)
+    frozen->practice = page_pictures(frozen->study, frozen->study.practice->page, pictures);
+  known[key] = frozen;
+  return frozen;
+}
+
+std::shared_ptr<const FrozenStudy> FrozenStudies::of(const std::string& id, int version) {
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find({id, version}); found != known.end()) return found->second;
+  }
+  const auto record = studies.find(id, version);
+  if (!record || (record->status != "open" && record->status != "closed")) throw nothing_here();
+  return of(*record);
+}
+
+}  // namespace penumbra::server::http

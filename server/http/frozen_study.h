@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/storage/studies.h"
+#include "study/enrolment.h"
+#include "study/study.h"
+
+namespace penumbra::server::http {
+
+/// A published version, parsed once: what participants are served from.
+struct FrozenStudy {
+  study::Study study;
+  std::string hash;
+  int version = 1;
+  std::uint64_t seed = 0;
+
+  study::EnrolmentPlan plan(std::size_t place) const {
+    return study::plan_enrolment(study, seed, place);
+  }
+
+  /// SHA-256 of the picture at a slot; empty where there is no such slot.
+  std::string picture(const study::PlannedPage& planned, std::size_t slot) const;
+  /// SHA-256 of the reference shown beside the pictures; empty where none is.
+  std::string reference(const study::PlannedPage& planned) const;
+
+  struct PagePictures {
+    std::vector<std::string> digests;  ///< in the page's order
+    std::string reference;
+  };
+  std::vector<PagePictures> pages;
+  PagePictures practice;
+};
+
+/// Name of a render request in the table of frozen pictures.
+std::string request_key(const nlohmann::json& render_request);
+
+/// Frozen studies by id and version. Thread-safe.
+class FrozenStudies {
+ public:
+  explicit FrozenStudies(storage::Studies& studies_) : studies(studies_) {}
+
+  std::shared_ptr<const FrozenStudy> of(const storage::StudyRecord& record);
+  /// Throws not_found.
+  std::shared_ptr<const FrozenStudy> of(const std::string& id, int version);
+
+ private:
+  storage::Studies& studies;
+  std::mutex mutex;
+  std::map<std::pair<std::string, int>, std::shared_ptr<const FrozenStudy>> known;
+};
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <httplib.h>
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "server/http/routes.h"
+
+namespace penumbra::server::http {
+
+/// Token buckets by client: `burst` calls at once, then `per_second`. Memory is bounded: full
+/// buckets are forgotten.
+class RateLimiter {
+ public:
+  RateLimiter(double burst_, double per_second_) : burst(burst_), per_second(per_second_) {}
+
+  /// Takes one from the client's bucket; false where it is empty.
+  bool allow(const std::string& client);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Bucket {
+    double left;
+    Clock::time_point at;
+  };
+  double burst;
+  double per_second;
+  std::mutex mutex;
+  std::unordered_map<std::string, Bucket> buckets;
+};
+
+/// Who calls: the address that the reverse proxy on this machine reports, else the peer's.
+std::string client_of(const httplib::Request& request);
+
+/// True where a reverse proxy speaks for the client.
+bool behind_proxy(const httplib::Request& request);
+
+/// True for the researcher's token or session.
+bool is_researcher(const Service& service, const httplib::Request& request);
+
+/// Throws unauthorized, forbidden (a call from another site), too_many, or draining.
+void check_permission(Service& service, const Route& route, const httplib::Request& request);
+
+/// Counts a wrong token or code; throws too_many where the client had too many.
+void count_failure(Service& service, const httplib::Request& request);
+
+/// Value of the session cookie, which is not the token itself.
+std::string session_of(const std::string& token);
+inline constexpr const char* session_cookie = "penumbra_session";
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,112 @@
+#include "server/http/publisher.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "renderer/error.h"
+#include "server/http/clock.h"
+#include "server/http/frozen_study.h"
+#include "server/http/png.h"
+#include "server/http/reply.h"
+#include "server/jobs/digest.h"
+#include "server/storage/data_folder.h"
+#include "study/study.h"
+
+namespace penumbra::server::http {
+namespace {
+
+/// Thrown to leave a publication where it is; the next start goes on with it.
+struct Stopped {};
+
+constexpr double look_s = 1.0;  // how often a waiting publication looks whether to stop
+
+}  // namespace
+
+void Publisher::publish(const storage::StudyRecord& draft) {
+  if (draft.status != "draft") throw Error("conflict", "only a draft can be published", "status");
+  const auto study = study::parse_study(draft.document);
+  const auto all = study::all_renders(study);
+  studies.start_publishing(draft.id, draft.version, study::study_hash(study),
+                           static_cast<int>(all.size()));
+  start(*studies.find(draft.id, draft.version));
+}
+
+void Publisher::resume() {
+  for (const auto& record : studies.being_published()) start(record);
+}
+
+void Publisher::start(const storage::StudyRecord& record) {
+  const std::lock_guard lock(mutex);
+  if (stopping) return;
+  auto& thread = threads[record.id];
+  if (thread.joinable()) thread.join();  // the study was a draft again, so its thread is over
+  thread = std::thread([this, record] { run(record); });
+}
+
+void Publisher::stop() {
+  stopping = true;
+  const std::lock_guard lock(mutex);
+  for (auto& [id, thread] : threads)
+    if (thread.joinable()) thread.join();
+}
+
+void Publisher::run(const storage::StudyRecord& record) {
+  try {
+    const auto study = study::parse_study(record.document);
+    std::filesystem::create_directories(pictures);
+    const auto all = study::all_renders(study);
+    for (const auto& request : all) submit(request);  // all workers have something to do
+    for (const auto& request : all) render_one(record, request);
+    studies.open(record.id, record.version, utc_now());
+    spdlog::info("study {} version {} is open", record.id, record.version);
+  } catch (const Stopped&) {
+    spdlog::info("publication of study {} goes on at the next start", record.id);
+  } catch (...) {
+    const Error error = error_of(std::current_exception());
+    spdlog::error("study {} cannot be published: {}", record.id, error.what());
+    try {
+      studies.fail_publishing(record.id, record.version, error_body(error).at("error"));
+    } catch (const Error& second) {
+      spdlog::error("and that cannot be stored: {}", second.what());
+    }
+  }
+}
+
+RenderRecord Publisher::submit(const nlohmann::json& request) {
+  while (true) {
+    if (stopping) throw Stopped{};
+    try {
+      return renders.submit(request);
+    } catch (const Error& error) {
+      if (error.code == "draining") throw Stopped{};
+      if (error.code != "busy") throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+  }
+}
+
+void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::json& request) {
+  auto render = submit(request);
+  while (render.status == "queued" || render.status == "running") {
+    if (stopping) throw Stopped{};
+    const auto later = renders.wait(render.id, look_s);
+    render = later ? *later : submit(request);
+  }
+  if (render.status != "done") {
+    if (stopping) throw Stopped{};
+    const auto& why = render.error;
+    const std::string name = request.value("scene", "") + " with " + request.value("technique", "");
+    throw Error(why.is_object() ? why.value("code", "internal") : "cancelled",
+                name + ": " + (why.is_object() ? why.value("message", "") : render.status));
+  }
+  const auto png = renders.artefact(render.id, "image.png");
+  if (!png) throw Error("storage", "the picture of " + render.id + " is gone");
+  const auto pixels = pixels_only(*png);
+  const auto digest = sha256(pixels);
+  if (!std::filesystem::exists(file_of(digest)))
+    storage::write_file_durably(file_of(digest), pixels);
+  studies.count_picture(record.id, record.version, request_key(request), {render.id, digest});
+}
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,163 @@
+#include "server/http/renders.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "server/http/body.h"
+#include "server/http/connection.h"
+#include "server/http/event_stream.h"
+#include "server/http/reply.h"
+#include "server/http/service.h"
+
+namespace penumbra::server::http {
+namespace {
+
+constexpr double longest_wait_s = 60.0;
+
+std::string path_of(const RenderRecord& record) {
+  return "/api/v1/renders/" + record.id;
+}
+
+RenderRecord record_at(Call& call) {
+  const auto record = call.service.renders->find(call.path.at("id"));
+  if (!record) throw nothing_here();
+  return *record;
+}
+
+void post_render(Call& call) {
+  const auto record = submit(call, call.json());
+  call.response.set_header("Location", path_of(record));
+  send_json(call.response, is_over(record) ? 200 : 202, body_of(record));
+}
+
+void get_render(Call& call) {
+  const double seconds = number_in_query(call.request, "wait_s", 0.0, longest_wait_s, 0.0);
+  auto record = record_at(call);
+  if (seconds > 0.0 && !is_over(record)) record = wait_for(call, record, seconds);
+  send_json(call.response, 200, body_of(record));
+}
+
+void cancel_render(Call& call) {
+  const auto& id = call.path.at("id");
+  if (!call.service.renders->cancel(id)) throw nothing_here();
+  send_json(call.response, 200, body_of(record_at(call)));
+}
+
+template <const char* name>
+void get_artefact(Call& call) {
+  send_artefact(call, record_at(call), name);
+}
+
+void get_events(Call& call) {
+  auto seen = std::make_shared<RenderRecord>(record_at(call));
+  auto first = std::make_shared<bool>(true);
+  send_events(call, [seen, first, &service = call.service](EventSink& sink) {
+    if (!*first) {
+      const auto next = service.renders->wait_change(seen->id, *seen, 1.0);
+      if (!next) return false;
+      const bool same = next->status == seen->status && next->progress == seen->progress;
+      if (same) return sink.keep_alive() && !service.draining;
+      *seen = *next;
+    }
+    *first = false;
+    return sink.send("render", body_of(*seen)) && !is_over(*seen);
+  });
+}
+
+constexpr char picture[] = "image.png";
+constexpr char linear[] = "image.exr";
+constexpr char visibility[] = "visibility.exr";
+constexpr char difference[] = "error.png";
+
+std::string media_type(const std::string& name) {
+  return name.ends_with(".png") ? "image/png" : "image/x-exr";
+}
+
+}  // namespace
+
+nlohmann::json body_of(const RenderRecord& record) {
+  const auto self = path_of(record);
+  nlohmann::json links = {{"self", self}, {"events", self + "/events"}};
+  if (record.status == "done") {
+    links["image"] = self + "/" + picture;
+    links["linear"] = self + "/" + linear;
+    links["visibility"] = self + "/" + visibility;
+    links["error"] = self + "/" + difference;
+  }
+  return {{"id", record.id},
+          {"status", record.status},
+          {"progress", record.progress},
+          {"request", record.request},
+          {"device", record.device},
+          {"error", record.error},
+          {"cost", record.cost},
+          {"quality", record.quality},
+          {"notes", record.notes},
+          {"links", links}};
+}
+
+RenderRecord submit(Call& call, const nlohmann::json& request) {
+  if (call.service.draining) throw Error("draining", "the server is stopping");
+  if (behind_proxy(call.request) && !is_researcher(call.service, call.request) &&
+      !call.service.render_calls.allow(client_of(call.request)))
+    throw Error("too_many", "too many renders from one address; wait a little");
+  return call.service.renders->submit(request);
+}
+
+RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  const Connection connection(call.request);
+  RenderRecord seen = record;
+  while (!is_over(seen)) {
+    const double left = std::chrono::duration<double>(end - Clock::now()).count();
+    if (left <= 0.0) break;
+    const auto next = call.service.renders->wait(record.id, std::min(left, 1.0));
+    if (!next) throw nothing_here();
+    seen = *next;
+    if (!is_over(seen) && connection.closed_by_peer()) {
+      call.service.renders->cancel(record.id);
+      throw Error("cancelled", "the client hung up");
+    }
+  }
+  return seen;
+}
+
+void send_artefact(Call& call, const RenderRecord& record, const std::string& name) {
+  if (record.status == "failed" && record.error.is_object())
+    throw Error(record.error.value("code", "internal"), record.error.value("message", ""),
+                record.error.value("field", ""));
+  if (record.status != "done") throw Error("conflict", "the render is " + record.status, "status");
+  // The artefacts of one render have addresses of their own, so that its id serves as tag for each.
+  const std::string tag = '"' + record.id + '"';
+  auto& response = call.response;
+  response.set_header("ETag", tag);
+  response.set_header("Cache-Control", "public, max-age=31536000, immutable");
+  const auto known = call.request.get_header_value("If-None-Match");
+  if (known == "*" || known.find(tag) != std::string::npos) {
+    response.status = 304;
+    return;
+  }
+  const auto bytes = call.service.renders->artefact(record.id, name);
+  if (!bytes) {
+    response.headers.erase("ETag");
+    response.headers.erase("Cache-Control");
+    throw nothing_here();
+  }
+  response.status = 200;
+  response.set_content(*bytes, media_type(name));
+}
+
+void add_render_routes(std::vector<Route>& table) {
+  const std::string one = "/api/v1/renders/{id}";
+  table.push_back({"POST", "/api/v1/renders", Access::anyone, post_render, 256 << 10});
+  table.push_back({"GET", one, Access::anyone, get_render});
+  table.push_back({"DELETE", one, Access::anyone, cancel_render});
+  table.push_back({"GET", one + "/image.png", Access::anyone, get_artefact<picture>});
+  table.push_back({"GET", one + "/image.exr", Access::anyone, get_artefact<linear>});
+  table.push_back({"GET", one + "/visibility.exr", Access::anyone, get_artefact<visibility>});
+  table.push_back({"GET", one + "/error.png", Access::anyone, get_artefact<difference>});
+  table.push_back({"GET", one + "/events", Access::anyone, get_events});
+}
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,184 @@
+#include "server/http/scene_upload.h"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include "renderer/error.h"
+#include "scenes/library.h"
+#include "server/http/secrets.h"
+#include "server/storage/data_folder.h"
+
+namespace penumbra::server::http {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr zip_int64_t most_files = 1000;
+constexpr zip_uint64_t most_bytes = 512u << 20;
+constexpr zip_uint64_t largest_ratio = 200;   // of bytes unpacked to packed; deflate ends near 1000
+constexpr zip_uint64_t small_file = 1 << 20;  // below this the ratio does no harm
+
+/// A folder that is gone at the end of its block.
+struct Staging {
+  fs::path path;
+  explicit Staging(const fs::path& data) : path(data / "incoming" / random_uuid()) {
+    fs::create_directories(path);
+  }
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+struct Archive {
+  zip_t* handle;
+  ~Archive() {
+    if (handle != nullptr) zip_discard(handle);
+  }
+};
+
+struct Entry {
+  zip_file_t* handle;
+  ~Entry() {
+    if (handle != nullptr) zip_fclose(handle);
+  }
+};
+
+void check_name(const std::string& name) {
+  const auto refuse = [&] {
+    throw unreadable("the archive names the file '" + name + "'", "body");
+  };
+  if (name.empty() || name.front() == '/' || name.size() > 255) refuse();
+  if (name.find_first_of("\\:") != std::string::npos) refuse();
+  for (const unsigned char c : name)
+    if (c < 0x20) refuse();
+  for (const auto& part : fs::path(name))
+    if (part == ".." || part == ".") refuse();
+}
+
+bool is_link(zip_t* archive, zip_uint64_t index) {
+  zip_uint8_t system = 0;
+  zip_uint32_t attributes = 0;
+  if (zip_file_get_external_attributes(archive, index, 0, &system, &attributes) != 0) return true;
+  constexpr zip_uint32_t kind = 0170000;
+  constexpr zip_uint32_t regular = 0100000;
+  constexpr zip_uint32_t folder = 0040000;
+  const zip_uint32_t mode = attributes >> 16 & kind;
+  return system == ZIP_OPSYS_UNIX && mode != 0 && mode != regular && mode != folder;
+}
+
+std::string bytes_of(zip_t* archive, zip_uint64_t index, zip_uint64_t size) {
+  Entry entry{zip_fopen_index(archive, index, 0)};
+  if (entry.handle == nullptr) throw unreadable("a file of the archive cannot be opened", "body");
+  std::string bytes(size, '\0');
+  zip_uint64_t done = 0;
+  while (done < size) {
+    const auto count = zip_fread(entry.handle, bytes.data() + done, size - done);
+    if (count <= 0) throw unreadable("a file of the archive cannot be unpacked", "body");
+    done += static_cast<zip_uint64_t>(count);
+  }
+  char more = 0;
+  if (zip_fread(entry.handle, &more, 1) != 0)
+    throw unreadable("a file of the archive is longer than it says", "body");
+  return bytes;
+}
+
+/// The one file in a folder that a scene is read from.
+fs::path main_file(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const auto ending = entry.path().extension();
+    if (ending == ".gltf" || ending == ".glb") found.push_back(entry.path());
+  }
+  if (found.size() != 1)
+    throw unreadable(
+        "the archive must hold one .gltf or .glb file, not " + std::to_string(found.size()),
+        "body");
+  return found.front();
+}
+
+fs::path write_upload(const fs::path& folder, const std::string& bytes) {
+  if (bytes.starts_with("PK\x03\x04")) {
+    unpack(bytes, folder);
+    return main_file(folder);
+  }
+  const auto first = bytes.find_first_not_of(" \t\r\n");
+  if (bytes.starts_with("glTF")) {
+    storage::write_file_durably(folder / "scene.glb", bytes);
+    return folder / "scene.glb";
+  }
+  if (first == std::string::npos || bytes[first] != '{')
+    throw unreadable("neither a glTF binary, nor a zip, nor a scene document", "body");
+  storage::write_file_durably(folder / "scene.json", bytes);
+  return folder / "scene.json";
+}
+
+}  // namespace
+
+void check_scene_id(const std::string& id) {
+  const bool letters = std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-' || c == '_';
+  });
+  if (id.empty() || id.size() > 64 || !letters || id.front() == '-' || id.front() == '_')
+    throw bad_value("id", "must be 1 to 64 of a-z, 0-9, - and _, beginning with a letter or digit");
+}
+
+void unpack(const std::string& bytes, const fs::path& folder) {
+  zip_error_t failure;
+  zip_error_init(&failure);
+  zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &failure);
+  Archive archive{source != nullptr
+                      ? zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &failure)
+                      : nullptr};
+  if (archive.handle == nullptr) {
+    if (source != nullptr) zip_source_free(source);
+    throw unreadable("the zip archive is damaged", "body");
+  }
+  const auto count = zip_get_num_entries(archive.handle, 0);
+  if (count > most_files)
+    throw unreadable("the archive holds more than " + std::to_string(most_files) + " files",
+                     "body");
+  zip_uint64_t total = 0;
+  for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
+    zip_stat_t stat;
+    if (zip_stat_index(archive.handle, i, 0, &stat) != 0)
+      throw unreadable("the zip archive is damaged", "body");
+    const std::string name = stat.name;
+    check_name(name);
+    if (is_link(archive.handle, i)) throw unreadable("the archive holds a link: " + name, "body");
+    if (name.ends_with('/')) continue;
+    if (name.ends_with(".zip")) throw unreadable("the archive holds an archive", "body");
+    if (stat.size > small_file &&
+        stat.size / std::max<zip_uint64_t>(stat.comp_size, 1) > largest_ratio)
+      throw unreadable("the archive is packed too tightly to be a scene: " + name, "body");
+    if (stat.size > most_bytes - total)
+      throw unreadable("the archive holds more than " + std::to_string(most_bytes) + " bytes",
+                       "body");
+    total += stat.size;
+    const auto file = folder / name;
+    fs::create_directories(file.parent_path());
+    storage::write_file_durably(file, bytes_of(archive.handle, i, stat.size));
+  }
+}
+
+std::shared_ptr<const Scene> store_scene(const fs::path& data, const std::string& id,
+                                         const std::string& bytes) {
+  const Staging staging(data);
+  const auto fresh = staging.path / "scene";
+  fs::create_directories(fresh);
+  const auto scene = scenes::load(write_upload(fresh, bytes).string());
+  const auto place = data / "scenes" / id;
+  fs::create_directories(place.parent_path());
+  if (fs::exists(place)) fs::rename(place, staging.path / "old");
+  fs::rename(fresh, place);
+  return scene;
+}
+
+bool remove_scene(const fs::path& data, const std::string& id) {
+  return fs::remove_all(data / "scenes" / id) > 0;
+}
+
+}  // namespace penumbra::server::http

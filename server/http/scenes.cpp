@@ -1,0 +1,56 @@
+#include "scenes/library.h"
+#include "server/http/body.h"
+#include "server/http/reply.h"
+#include "server/http/routes.h"
+#include "server/http/scene_upload.h"
+#include "server/http/service.h"
+#include "server/jobs/catalogue.h"
+#include "server/jobs/request_scene.h"
+
+namespace penumbra::server::http {
+namespace {
+
+constexpr std::size_t largest_scene = 256u << 20;  // bytes; nginx's limit in deploy/ is the same
+
+bool is_built_in(const std::string& id) {
+  for (const auto& scene : scenes::built_in())
+    if (scene.id == id) return true;
+  return false;
+}
+
+void list_scenes(Call& call) {
+  send_json(call.response, 200, scene_catalogue(call.service.folder.path()));
+}
+
+void put_scene(Call& call) {
+  const auto& id = call.path.at("id");
+  check_scene_id(id);
+  if (is_built_in(id)) throw Error("conflict", "built-in scenes cannot be replaced", "id");
+  const auto& data = call.service.folder.path();
+  const bool replaced = std::filesystem::exists(data / "scenes" / id);
+  const auto scene = store_scene(data, id, call.body);
+  send_json(call.response, replaced ? 200 : 201,
+            {{"id", id},
+             {"title", scene->title.empty() ? id : scene->title},
+             {"description", "imported"},
+             {"built_in", false},
+             {"notes", scene->notes}});
+}
+
+void delete_scene(Call& call) {
+  const auto& id = call.path.at("id");
+  if (is_built_in(id)) throw Error("conflict", "built-in scenes cannot be removed", "id");
+  check_scene_id(id);
+  if (!remove_scene(call.service.folder.path(), id)) throw nothing_here();
+  call.response.status = 204;
+}
+
+}  // namespace
+
+void add_scene_routes(std::vector<Route>& table) {
+  table.push_back({"GET", "/api/v1/scenes", Access::anyone, list_scenes});
+  table.push_back({"PUT", "/api/v1/scenes/{id}", Access::researcher, put_scene, largest_scene});
+  table.push_back({"DELETE", "/api/v1/scenes/{id}", Access::researcher, delete_scene});
+}
+
+}  // namespace penumbra::server::http

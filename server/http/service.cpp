@@ -1,0 +1,52 @@
+#include "server/http/service.h"
+
+#include <spdlog/spdlog.h>
+
+#include "server/http/clock.h"
+#include "server/http/documents.h"
+#include "server/http/secrets.h"
+#include "study/study.h"
+
+namespace penumbra::server::http {
+
+Service::Service(const ServeOptions& options_, const MakeRenderService& make_renders)
+    : options(options_),
+      folder(options.data),
+      token(researcher_token(options.token_file.empty() ? folder.path() / "researcher.token"
+                                                        : options.token_file)),
+      database(folder.path() / "penumbra.sqlite"),
+      studies(database),
+      participants(database),
+      renders(make_renders()),
+      frozen(studies),
+      publisher(studies, *renders, folder.path() / "pictures"),
+      sweeps(database, *renders) {}
+
+std::string Service::not_ready() const {
+  if (draining) return "draining";
+  if (!database.healthy()) return "the database is damaged: restore a backup";
+  return {};
+}
+
+nlohmann::json Service::gauges() {
+  nlohmann::json numbers = {{"renders", renders->statistics()}, {"ready", not_ready().empty()}};
+  if (!database.healthy()) return numbers;
+  for (const auto& record : studies.list()) {
+    const auto counts = studies.counts(record.id, record.version);
+    auto& total = numbers["participants"];
+    total["entered"] = total.value("entered", 0) + counts.entered;
+    total["completed"] = total.value("completed", 0) + counts.completed;
+  }
+  return numbers;
+}
+
+void store_shipped_studies(Service& service) {
+  if (!service.database.healthy()) return;
+  for (const auto& file : embedded_studies()) {
+    const auto study = study::parse_study(std::string(file.text));
+    if (service.studies.latest(study.id)) continue;
+    service.studies.put_draft(study.id, study.document, random_seed(), utc_now());
+  }
+}
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "server/http/frozen_study.h"
+#include "server/http/guard.h"
+#include "server/http/metrics.h"
+#include "server/http/publisher.h"
+#include "server/http/serve.h"
+#include "server/http/sweeps.h"
+#include "server/jobs/render_service.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/database.h"
+#include "server/storage/participants.h"
+#include "server/storage/studies.h"
+
+namespace penumbra::server::http {
+
+/// Everything that handlers use. Members are destroyed in reverse: threads first, the lock last.
+struct Service {
+  Service(const ServeOptions& options_, const MakeRenderService& make_renders);
+
+  ServeOptions options;
+  storage::DataFolder folder;
+  std::string token;  ///< the researcher's
+  storage::Database database;
+  storage::Studies studies;
+  storage::Participants participants;
+  std::unique_ptr<RenderService> renders;
+  FrozenStudies frozen;
+  Metrics metrics;
+  RateLimiter failures{30, 0.5};     ///< wrong tokens and codes
+  RateLimiter enrolments{120, 1};    ///< per client behind the proxy: a lab shares one address
+  RateLimiter render_calls{240, 4};  ///< per client behind the proxy
+  std::atomic<bool> draining{false};
+  Publisher publisher;
+  Sweeps sweeps;
+
+  /// Empty when requests can be served, else why not.
+  std::string not_ready() const;
+
+  /// Numbers for /metrics.
+  nlohmann::json gauges();
+};
+
+/// Stores the studies that the program carries in a data folder that has none of that name.
+void store_shipped_studies(Service& service);
+
+}  // namespace penumbra::server::http
