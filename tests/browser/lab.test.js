@@ -49,7 +49,7 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
     await person.context.close();
   }
   await page.locator(".figures dd").first().filter({ hasText: /^2$/ }).waitFor();
-  await page.getByRole("heading", { name: "All scenes" }).waitFor();
+  await page.locator(".result", { hasText: "All scenes" }).getByText("2 participants").waitFor();
   const results = await server.call("GET", `/api/v1/studies/${study}/results.json`);
   const overall = results.included_sets.all.overall.techniques;
   const shown = await page.locator(".result").first().locator("tbody tr").evaluateAll((rows) =>

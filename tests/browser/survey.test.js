@@ -84,6 +84,32 @@ test("a picture is dragged to a shelf, and from there to another and back to the
   });
 });
 
+test("on a phone a held picture is dragged by finger, while a swipe over the pictures scrolls", async () => {
+  await visit(async (person) => {
+    await person.enter();
+    const devtools = await person.context.newCDPSession(person.page);
+    const touch = (type, x, y) => devtools.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x, y }] });
+    const stroke = async (from, to, hold_ms) => {
+      await touch("touchStart", ...from);
+      await person.page.waitForTimeout(hold_ms);
+      for (let step = 1; step <= 10; ++step) {
+        await touch("touchMove", from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
+        await person.page.waitForTimeout(16);
+      }
+      await touch("touchEnd");
+    };
+    const picture = await person.picture("B").boundingBox();
+    const shelf = await person.shelf(1).boundingBox();
+    const middle = [picture.x + picture.width / 2, picture.y + picture.height / 2];
+    await stroke(middle, [shelf.x + shelf.width / 2, shelf.y + shelf.height / 2], 500);
+    assert.deepEqual(await person.arrangement(), { A: null, B: 1, C: null });
+    assert.equal(await person.page.evaluate(() => scrollY), 0);
+    await stroke(middle, [middle[0], middle[1] - 150], 0);
+    await person.page.waitForFunction(() => scrollY > 50);
+    assert.deepEqual(await person.arrangement(), { A: null, B: 1, C: null });
+  }, { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
+});
+
 test("a reload in the middle resumes with everything as it was, in a second tab too", async () => {
   const rows = await visit(async (person) => {
     await person.enter();
