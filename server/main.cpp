@@ -1,3 +1,5 @@
 #include "server/cli/command_line.h"
 
-int main(int argc, char** argv) { return penumbra::server::cli::run(argc, argv); }
+int main(int argc, char** argv) {
+  return penumbra::server::cli::run(argc, argv);
+}

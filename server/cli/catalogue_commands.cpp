@@ -17,7 +17,8 @@ int list_scenes(const Session& session, const std::filesystem::path& data) {
   const json document = scene_catalogue(data);
   Table table{{"scene", "title", "what it shows"}};
   for (const json& scene : document.at("scenes"))
-    table.add({text_of(scene.at("id")), text_of(scene.at("title")), text_of(scene.at("description"))});
+    table.add(
+        {text_of(scene.at("id")), text_of(scene.at("title")), text_of(scene.at("description"))});
   session.print(document, table.text(true) +
                               "sweep:OxTxL generates O objects of T triangles under L lights.\n");
   return 0;
@@ -38,9 +39,9 @@ std::string range_of(const json& schema) {
 
 std::string technique_text(const json& technique, const json& presets) {
   std::ostringstream text;
-  text << technique.at("id").get<std::string>() << " (" << text_of(technique.at("label")) << "): "
-       << text_of(technique.at("title")) << "\n  family " << text_of(technique.at("family"))
-       << "; " << text_of(technique.at("source")) << "\n";
+  text << technique.at("id").get<std::string>() << " (" << text_of(technique.at("label"))
+       << "): " << text_of(technique.at("title")) << "\n  family "
+       << text_of(technique.at("family")) << "; " << text_of(technique.at("source")) << "\n";
   Table parameters{{"  parameter", "default", "range", "meaning"}};
   for (const auto& [name, schema] : technique.at("parameters").at("properties").items())
     parameters.add({"  " + name, text_of(schema.at("default")), range_of(schema),
@@ -76,7 +77,8 @@ void add_catalogue_commands(CLI::App& app, Session& session) {
     session.action = [data, &session] { return list_scenes(session, *data); };
   });
 
-  CLI::App* techniques = app.add_subcommand("techniques", "List techniques, parameters and presets");
+  CLI::App* techniques =
+      app.add_subcommand("techniques", "List techniques, parameters and presets");
   add_json_flag(*techniques, session);
   techniques->callback(
       [&session] { session.action = [&session] { return list_techniques(session); }; });

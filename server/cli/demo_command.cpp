@@ -96,8 +96,8 @@ std::string table_of(const std::vector<Cell>& cells,
   header.insert(header.end(), pages.begin(), pages.end());
   Table table(header);
   for (const std::string& picture : pictures) {
-    std::vector<std::string> row{picture == labels[picture] ? picture
-                                                            : picture + " (" + labels[picture] + ")"};
+    std::vector<std::string> row{
+        picture == labels[picture] ? picture : picture + " (" + labels[picture] + ")"};
     for (const std::string& page : pages) {
       const auto found = values.find({page, picture});
       row.push_back(found == values.end() ? "-" : found->second);
@@ -108,14 +108,15 @@ std::string table_of(const std::vector<Cell>& cells,
 }
 
 /// Copies of the pictures under names for people.
-void write_pictures(const std::vector<Cell>& cells, RenderService& service, const fs::path& folder) {
+void write_pictures(const std::vector<Cell>& cells, RenderService& service,
+                    const fs::path& folder) {
   fs::create_directories(folder);
   for (const Cell& cell : cells)
     for (const auto& [artefact, suffix] :
          std::map<std::string, std::string>{{"image.png", ""}, {"error.png", "-error"}})
       if (const auto bytes = service.artefact(cell.id, artefact))
-        write_durably(folder / (cell.page + "-" + cell.picture + suffix + ".png"),
-                      folder / ".new", *bytes);
+        write_durably(folder / (cell.page + "-" + cell.picture + suffix + ".png"), folder / ".new",
+                      *bytes);
 }
 
 int demonstrate(const Session& session, const Options& options) {
@@ -139,12 +140,11 @@ int demonstrate(const Session& session, const Options& options) {
       "rms_y: error against the converged reference, 0..255\n" +
       table_of(cells, [](const Cell& c) { return number(c.quality.at("rms_y"), 2); }) +
       "\nms per frame on " + device.value("name", "this device") + "\n" +
-      table_of(cells,
-               [](const Cell& c) { return number(c.cost.at("frame_ms").at("median"), 1); }) +
+      table_of(cells, [](const Cell& c) { return number(c.cost.at("frame_ms").at("median"), 1); }) +
       "\npictures and error maps: " + folder.string() + "\n";
-  session.print({{"study", study.id}, {"device", device}, {"pictures", list},
-                 {"folder", folder.string()}},
-                text);
+  session.print(
+      {{"study", study.id}, {"device", device}, {"pictures", list}, {"folder", folder.string()}},
+      text);
   return 0;
 }
 

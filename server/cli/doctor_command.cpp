@@ -63,8 +63,7 @@ Check check_folder(const std::string& name, const fs::path& folder) {
   if (error || ::access(folder.c_str(), W_OK) != 0)
     return {name, false, folder.string() + " cannot be written to"};
   const auto space = fs::space(folder, error);
-  return {name, true,
-          folder.string() + ", " + std::to_string(space.available >> 20) + " MiB free"};
+  return {name, true, folder.string() + ", " + std::to_string(space.available >> 20) + " MiB free"};
 }
 
 Check check_drawing(const std::string& device, bool validation) {
@@ -85,10 +84,8 @@ Check check_validation(const json& names) {
 int examine(const Session& session, const std::string& device, const fs::path& data) {
   json devices = json::array();
   for (const DeviceInfo& info : list_devices())
-    devices.push_back({{"index", info.index},
-                       {"name", info.name},
-                       {"driver", info.driver},
-                       {"type", info.type}});
+    devices.push_back(
+        {{"index", info.index}, {"name", info.name}, {"driver", info.driver}, {"type", info.type}});
   const json names = layers();
   std::vector<Check> checks{check_drawing(device, false), check_folder("data folder", data),
                             check_folder("cache folder", cache_folder())};

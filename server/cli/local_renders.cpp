@@ -37,11 +37,10 @@ ReferencePictures LocalRenders::reference_for(const CanonicalRequest& request,
   if (!record.is_null() && record.at("device") == device) {
     const auto image = references_.read(reference.id, want::image);
     const auto visibility = references_.read(reference.id, want::visibility);
-    if (image && visibility)
-      return {reference.id, *image, *visibility, record.at("noise_rms_y")};
+    if (image && visibility) return {reference.id, *image, *visibility, record.at("noise_rms_y")};
   }
-  TaskResult drawn = run_task(
-      renderer_, {reference, {want::image, want::visibility, want::noise}, {}}, progress);
+  TaskResult drawn =
+      run_task(renderer_, {reference, {want::image, want::visibility, want::noise}, {}}, progress);
   references_.put(reference.id, {{"device", device}, {"noise_rms_y", drawn.noise_rms_y}},
                   drawn.artefacts);
   return {reference.id, std::move(drawn.artefacts[want::image]),
@@ -58,9 +57,8 @@ LocalRenders::Outcome LocalRenders::render(const CanonicalRequest& request,
     task.reference =
         reference_for(request, [&](double value) { progress(value * reference_part); });
   }
-  TaskResult result = run_task(renderer_, task, [&](double value) {
-    progress(from + (1.0 - from) * value);
-  });
+  TaskResult result =
+      run_task(renderer_, task, [&](double value) { progress(from + (1.0 - from) * value); });
   Outcome outcome;
   outcome.record.id = request.id;
   outcome.record.status = "done";

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int bar_width = 32;                            // characters
+constexpr int bar_width = 32;  // characters
 constexpr auto bar_interval = std::chrono::milliseconds(100);
 constexpr auto line_interval = std::chrono::seconds(5);  // logs stay short
 

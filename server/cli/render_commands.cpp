@@ -93,16 +93,17 @@ std::string cost_text(const json& cost) {
   if (cost.is_null()) return {};
   const json& frame = cost.at("frame_ms");
   std::ostringstream text;
-  text << "frame        " << number(frame.at("median"), 3) << " ms median, " << number(frame.at("p95"), 3)
-       << " ms p95 over " << frame.at("frames").get<int>() << " frames\n"
+  text << "frame        " << number(frame.at("median"), 3) << " ms median, "
+       << number(frame.at("p95"), 3) << " ms p95 over " << frame.at("frames").get<int>()
+       << " frames\n"
        << "create       " << number(cost.at("create_ms"), 1) << " ms\n"
        << "memory       " << cost.at("memory").at("over_none_bytes").get<std::uint64_t>()
        << " bytes over none\n";
   Table table{{"pass", "ms", "vertices", "primitives", "fragments", "compute"}};
   for (const json& pass : cost.at("passes"))
-    table.add({pass.at("name").get<std::string>(), number(pass.at("median_ms"), 3), pass.at("vertices").dump(),
-               pass.at("primitives").dump(), pass.at("fragment_invocations").dump(),
-               pass.at("compute_invocations").dump()});
+    table.add({pass.at("name").get<std::string>(), number(pass.at("median_ms"), 3),
+               pass.at("vertices").dump(), pass.at("primitives").dump(),
+               pass.at("fragment_invocations").dump(), pass.at("compute_invocations").dump()});
   return text.str() + table.text();
 }
 
@@ -160,8 +161,9 @@ void add(CLI::App& app, Session& session, const std::string& name, const std::st
   command->add_option("--visibility", options->visibility, "A channel per light, .exr");
   command->add_option("--error", options->error, "Signed error against the reference, .png");
   if (measure) {
-    command->add_option("--frames", options->frames,
-                        "Frames to time [" + std::to_string(default_frames) + ", fewer of slow ones]");
+    command->add_option(
+        "--frames", options->frames,
+        "Frames to time [" + std::to_string(default_frames) + ", fewer of slow ones]");
   } else {
     command->add_option("--diagnostic", options->diagnostic,
                         "Draw this diagnostic picture of the technique instead");

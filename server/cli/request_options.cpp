@@ -24,7 +24,8 @@ void RequestOptions::add_to(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--light", lights, "Key of a light, NAME.key=value; may be repeated")
       ->allow_extra_args(false);
-  const auto key = [&](const std::string& flag, const std::string& name, const std::string& meaning) {
+  const auto key = [&](const std::string& flag, const std::string& name,
+                       const std::string& meaning) {
     command.add_option_function<std::string>(
         "--" + flag, [this, name](const std::string& value) { keys[name] = value; }, meaning);
   };
@@ -40,7 +41,8 @@ void RequestOptions::add_to(CLI::App& command) {
   key("supersampling", "supersampling",
       with_default("Samples per pixel: " + choices, defaults.supersampling));
   key("light-samples", "light_samples",
-      with_default("Rays per pixel and light, of techniques that take many", defaults.light_samples));
+      with_default("Rays per pixel and light, of techniques that take many",
+                   defaults.light_samples));
   key("seed", "seed", with_default("Of everything random", defaults.seed));
   command.add_option("--data", data, "Folder of imported scenes");
   command.add_option("--device", device, "Vulkan device: part of its name, or its index");

@@ -15,8 +15,8 @@ namespace penumbra::server::cli {
 struct RequestOptions {
   std::string scene;
   std::string technique;
-  std::vector<std::string> sets;    ///< name=value
-  std::vector<std::string> lights;  ///< NAME.key=value
+  std::vector<std::string> sets;            ///< name=value
+  std::vector<std::string> lights;          ///< NAME.key=value
   std::map<std::string, std::string> keys;  ///< width, height, ...: those given
   std::filesystem::path data;
   std::string device;

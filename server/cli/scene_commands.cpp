@@ -21,19 +21,14 @@ json summary(const Scene& scene) {
   for (const Light& light : scene.lights) names.push_back(light.name);
   json cameras = json::array();
   for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
-  return {{"id", scene.id},
-          {"triangles", triangles},
-          {"instances", scene.instances.size()},
-          {"lights", names},
-          {"cameras", cameras},
-          {"hash", scenes::content_hash(scene)},
+  return {{"id", scene.id},      {"triangles", triangles}, {"instances", scene.instances.size()},
+          {"lights", names},     {"cameras", cameras},     {"hash", scenes::content_hash(scene)},
           {"notes", scene.notes}};
 }
 
 std::string text_of(const json& document) {
-  std::string text = document.at("id").get<std::string>() + ": " +
-                     document.at("triangles").dump() + " triangles in " +
-                     document.at("instances").dump() + " instances, " +
+  std::string text = document.at("id").get<std::string>() + ": " + document.at("triangles").dump() +
+                     " triangles in " + document.at("instances").dump() + " instances, " +
                      std::to_string(document.at("lights").size()) + " lights, " +
                      std::to_string(document.at("cameras").size()) + " cameras\n";
   for (const json& note : document.at("notes")) text += "note: " + note.get<std::string>() + "\n";
@@ -79,7 +74,8 @@ struct Options {
 
 void add_scene_commands(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* import = app.add_subcommand("import", "Take a scene from a glTF, GLB, OBJ or scene file");
+  CLI::App* import =
+      app.add_subcommand("import", "Take a scene from a glTF, GLB, OBJ or scene file");
   import->add_option("FILE", options->file, ".gltf, .glb, .obj, or a scene document .json")
       ->required()
       ->check(CLI::ExistingFile);
@@ -89,20 +85,21 @@ void add_scene_commands(CLI::App& app, Session& session) {
   import->callback([options, &session] {
     session.action = [options, &session] {
       return import_scene(session, options->file, options->id, options->data);
-    };
-  });
+};
+}  // namespace penumbra::server::cli
+);
 
-  CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
-  out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
-      ->required();
-  out->add_option("--out", options->out, "File, .glb")->required();
-  out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
-  add_json_flag(*out, session);
-  out->callback([options, &session] {
-    session.action = [options, &session] {
-      return export_scene(session, options->scene, options->out, options->data);
-    };
-  });
+CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
+out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
+    ->required();
+out->add_option("--out", options->out, "File, .glb")->required();
+out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
+add_json_flag(*out, session);
+out->callback([options, &session] {
+  session.action = [options, &session] {
+    return export_scene(session, options->scene, options->out, options->data);
+  };
+});
 }
 
 }  // namespace penumbra::server::cli

@@ -21,8 +21,9 @@ void add_serve(CLI::App& app, Session& session) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   serve->add_option("--device", options->device, "Vulkan device: part of its name, or its index");
-  serve->add_option("--token-file", options->token_file,
-                    "File with the researcher's token; by default one in the data folder, made once");
+  serve->add_option(
+      "--token-file", options->token_file,
+      "File with the researcher's token; by default one in the data folder, made once");
   serve->add_option("--web", options->web, "Serve the pages from this folder");
   serve->add_option("--public-url", options->public_url, "How browsers reach this server");
   serve->add_option("--queue-limit", options->queue_limit, "Renders that may wait")
@@ -31,24 +32,27 @@ void add_serve(CLI::App& app, Session& session) {
   serve->add_option("--render-deadline", options->render_deadline_s, "Seconds per render")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
-  serve->add_option("--drain-deadline", options->drain_deadline_s,
-                    "Seconds for running work after SIGTERM")
+  serve
+      ->add_option("--drain-deadline", options->drain_deadline_s,
+                   "Seconds for running work after SIGTERM")
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   serve->add_flag("--validation", options->validation, "Turn Vulkan's validation layer on");
-  serve->callback([options, &session] { session.action = [options] { return http::serve(*options); }; });
+  serve->callback(
+      [options, &session] { session.action = [options] { return http::serve(*options); }; });
 }
 
 void add_worker(CLI::App& app, Session& session) {
   auto options = std::make_shared<WorkerOptions>();
-  CLI::App* worker =
-      app.add_subcommand("worker", "Draw what a server asks for on standard input (started by serve)");
+  CLI::App* worker = app.add_subcommand(
+      "worker", "Draw what a server asks for on standard input (started by serve)");
   worker->add_option("--data", options->data, "Folder of imported scenes");
   worker->add_option("--device", options->device, "Vulkan device: part of its name, or its index");
   worker->add_option("--memory-limit", options->memory_limit,
                      "Address space that drawing may add, bytes; 0: the machine's memory");
   worker->add_flag("--validation", options->validation, "Turn Vulkan's validation layer on");
-  worker->callback([options, &session] { session.action = [options] { return run_worker(*options); }; });
+  worker->callback(
+      [options, &session] { session.action = [options] { return run_worker(*options); }; });
 }
 
 }  // namespace

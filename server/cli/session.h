@@ -10,8 +10,8 @@ namespace penumbra::server::cli {
 
 /// What a command works with besides its options.
 struct Session {
-  bool json = false;             ///< one document on standard output and nothing else
-  std::function<int()> action;   ///< set by the command that was named
+  bool json = false;            ///< one document on standard output and nothing else
+  std::function<int()> action;  ///< set by the command that was named
 
   /// Prints a document where --json was given, else what people read.
   void print(const nlohmann::json& document, const std::string& text) const;
@@ -30,8 +30,9 @@ void add_statistics_command(CLI::App& app, Session& session);  // statistics
 void add_doctor_command(CLI::App& app, Session& session);      // doctor
 void add_demo_command(CLI::App& app, Session& session);        // demo
 
-/// Arguments with the environment (PENUMBRA_NAME) and the file of --config put in where no flag says
-/// otherwise. Throws bad_value for unknown keys.
-std::vector<std::string> complete_arguments(const CLI::App& app, std::vector<std::string> arguments);
+/// Arguments with the environment (PENUMBRA_NAME) and the file of --config put in where no flag
+/// says otherwise. Throws bad_value for unknown keys.
+std::vector<std::string> complete_arguments(const CLI::App& app,
+                                            std::vector<std::string> arguments);
 
 }  // namespace penumbra::server::cli

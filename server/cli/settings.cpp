@@ -107,8 +107,8 @@ FileSettings read_file(const CLI::App& app, const std::string& path) {
     if (std::find(names.begin(), names.end(), item.name) == names.end()) {
       std::string list;
       for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-      throw bad_value(item.fullname(), where + section + " has no option \"" + item.name +
-                                           "\"; it has " + list);
+      throw bad_value(item.fullname(),
+                      where + section + " has no option \"" + item.name + "\"; it has " + list);
     }
     settings.of_command[section][item.name] = item.inputs;
   }

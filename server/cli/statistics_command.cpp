@@ -23,8 +23,7 @@ int analyse(const Session& session, const fs::path& responses, const fs::path& o
   const auto text = read_whole(responses);
   if (!text) throw unreadable("cannot read " + responses.string(), "RESPONSES");
   const study::ReportOptions options;
-  const nlohmann::json report =
-      study::statistics_report(study::parse_responses(*text), options);
+  const nlohmann::json report = study::statistics_report(study::parse_responses(*text), options);
   const std::string table = study::statistics_table(report, options);
   if (!out.empty()) {
     fs::create_directories(out);

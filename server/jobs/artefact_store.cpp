@@ -172,8 +172,7 @@ std::shared_ptr<const std::string> ArtefactStore::read(const std::string& id,
 
   // Reading and hashing go on beside other requests.
   auto text = read_whole(folder_of(id) / name);
-  const bool sound =
-      text && text->size() == expected.bytes && sha256(*text) == expected.sha256;
+  const bool sound = text && text->size() == expected.bytes && sha256(*text) == expected.sha256;
   const std::lock_guard lock(mutex_);
   if (!sound) {
     const auto entry = entries_.find(id);
@@ -233,8 +232,7 @@ bool ArtefactStore::write_files(const std::string& id, const json& stored, const
   };
   try {
     fs::create_directories(folder_of(id));
-    for (const auto& [name, bytes] : files)
-      write_durably(folder_of(id) / name, temporary(), bytes);
+    for (const auto& [name, bytes] : files) write_durably(folder_of(id) / name, temporary(), bytes);
     write_durably(folder_of(id) / record_name, temporary(), sealed(stored));
     return true;
   } catch (const std::system_error&) {

@@ -16,8 +16,8 @@
 namespace penumbra::server {
 
 /// Files of finished renders by id, on disk and the recent small ones in memory. Every file is
-/// verified against the digest in its record before it is handed out; what fails is forgotten, to be
-/// drawn again. Least recently used renders go when the files exceed the cap. Thread-safe, and
+/// verified against the digest in its record before it is handed out; what fails is forgotten, to
+/// be drawn again. Least recently used renders go when the files exceed the cap. Thread-safe, and
 /// several programs may share a folder.
 ///
 /// FOLDER/ab/abcd.../record.json and files; FOLDER/new/ holds files under way, swept at start.
@@ -55,7 +55,7 @@ class ArtefactStore {
     std::string sha256;
   };
   struct Entry {
-    bool loaded = false;      ///< record and files are known, not only that they exist
+    bool loaded = false;  ///< record and files are known, not only that they exist
     nlohmann::json record;
     std::map<std::string, File> files;
     std::uint64_t bytes = 0;  ///< on disk

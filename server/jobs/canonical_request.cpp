@@ -33,7 +33,8 @@ class Reader {
  public:
   explicit Reader(const json& request) : request_(request) {
     if (!request.is_object())
-      throw bad_value("", "a request is a JSON object, this is " + std::string(request.type_name()));
+      throw bad_value("",
+                      "a request is a JSON object, this is " + std::string(request.type_name()));
   }
 
   std::string text(const std::string& key, const std::string& fallback, bool required = false) {
@@ -117,12 +118,13 @@ json with_real_numbers(const json& value) {
 
 std::uint64_t supersampling_of(Reader& reader, std::uint64_t fallback) {
   const auto& allowed = RenderLimits::supersampling;
-  const std::uint64_t value = reader.integer("supersampling", fallback, allowed.front(), allowed.back());
+  const std::uint64_t value =
+      reader.integer("supersampling", fallback, allowed.front(), allowed.back());
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
     std::string list;
     for (const auto choice : allowed) list += (list.empty() ? "" : ", ") + std::to_string(choice);
-    throw bad_value("supersampling", "supersampling must be one of " + list + ", not " +
-                                         std::to_string(value));
+    throw bad_value("supersampling",
+                    "supersampling must be one of " + list + ", not " + std::to_string(value));
   }
   return value;
 }
@@ -134,8 +136,8 @@ void check_diagnostic(const TechniqueDescription& technique, const std::string& 
     if (diagnostic.name == name) return;
     known += (known.empty() ? "" : ", ") + diagnostic.name;
   }
-  throw bad_value("diagnostic", technique.id + " has no diagnostic picture \"" + name + "\"; it has " +
-                                    (known.empty() ? "none" : known));
+  throw bad_value("diagnostic", technique.id + " has no diagnostic picture \"" + name +
+                                    "\"; it has " + (known.empty() ? "none" : known));
 }
 
 /// Overrides of lights that the scene has and accepts; nothing where nothing is replaced.
@@ -178,8 +180,8 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   out["height"] = reader.integer("height", defaults.height, 1, RenderLimits::max_size);
   const std::string camera = reader.text("camera", "");
   out["supersampling"] = supersampling_of(reader, defaults.supersampling);
-  out["light_samples"] = reader.integer("light_samples", defaults.light_samples, 1,
-                                        RenderLimits::max_light_samples);
+  out["light_samples"] =
+      reader.integer("light_samples", defaults.light_samples, 1, RenderLimits::max_light_samples);
   const json lights = reader.object("lights");
   out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
   out["diagnostic"] = reader.text("diagnostic", "");

@@ -18,7 +18,7 @@ namespace penumbra::server {
 struct RequestContext {
   std::filesystem::path data;  ///< where imported scenes lie; may be empty
   std::string device;          ///< as RendererOptions::device
-  bool files = false;          ///< paths are scenes too: for a person's command line, never for HTTP
+  bool files = false;  ///< paths are scenes too: for a person's command line, never for HTTP
 };
 
 /// A request with nothing left open.
@@ -37,21 +37,22 @@ struct CanonicalRequest {
 inline constexpr std::uint32_t default_frames = 9;
 
 /// Reads a request as POST /api/v1/renders has it: scene, technique, parameters, width, height,
-/// camera, supersampling, light_samples, lights, seed, diagnostic, measure, frames. Throws bad_value,
-/// naming the field and what is allowed, for unknown keys, wrong types and values out of range;
-/// not_found for scene, technique or camera.
+/// camera, supersampling, light_samples, lights, seed, diagnostic, measure, frames. Throws
+/// bad_value, naming the field and what is allowed, for unknown keys, wrong types and values out of
+/// range; not_found for scene, technique or camera.
 CanonicalRequest read_request(const nlohmann::json& request, const RequestContext& context);
 
-/// The request that is the truth for this one: same scene, camera, size, samples and lights, drawn by
-/// the technique of family `truth` with its defaults and the default seed. Parameters common to all
-/// techniques (how light is encoded) are carried over.
+/// The request that is the truth for this one: same scene, camera, size, samples and lights, drawn
+/// by the technique of family `truth` with its defaults and the default seed. Parameters common to
+/// all techniques (how light is encoded) are carried over.
 CanonicalRequest reference_of(const CanonicalRequest& request, const RequestContext& context);
 
 /// What the renderer draws for a canonical request, light overrides applied.
 RenderRequest to_render_request(const CanonicalRequest& request);
 
-/// A request from names and values as text: URL queries, `--set`. Names that are no key of a request
-/// are parameters; `light.NAME.key` is an entry of `lights`. A name given twice is a bad value.
+/// A request from names and values as text: URL queries, `--set`. Names that are no key of a
+/// request are parameters; `light.NAME.key` is an entry of `lights`. A name given twice is a bad
+/// value.
 nlohmann::json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries);
 
 /// Adds `NAME.key=value` to the `lights` of a request. The value is a number, numbers separated by

@@ -161,7 +161,9 @@ void QueuedRenderService::keep(const CanonicalRequest& request, const json& devi
   const json& done = result.body.at("done");
   json record = store_.find(request.id);
   if (record.is_null())
-    record = {{"request", request.request}, {"cost", nullptr}, {"quality", nullptr},
+    record = {{"request", request.request},
+              {"cost", nullptr},
+              {"quality", nullptr},
               {"notes", json::array()}};
   record["device"] = device;
   const bool measured = !done.at("cost").is_null() || !done.at("quality").is_null();
@@ -175,9 +177,8 @@ void QueuedRenderService::keep(const CanonicalRequest& request, const json& devi
   store_.put(request.id, record, result.blobs);
 }
 
-void QueuedRenderService::finish(const std::shared_ptr<Job>& job,
-                                 const std::set<std::string>& done, const std::string& status,
-                                 const json& error) {
+void QueuedRenderService::finish(const std::shared_ptr<Job>& job, const std::set<std::string>& done,
+                                 const std::string& status, const json& error) {
   const std::string& id = job->record.id;
   const auto found = status == "done" ? stored(id) : std::nullopt;
   const Lock lock(mutex_);

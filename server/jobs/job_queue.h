@@ -18,7 +18,7 @@ struct Job {
   RenderRecord record;
   unsigned interest = 0;  ///< submitters that have not cancelled
   bool cancelled = false;
-  bool alone = false;     ///< a measurement: nothing else may run beside it
+  bool alone = false;  ///< a measurement: nothing else may run beside it
 };
 
 /// First come, first served; a measurement waits until nothing runs and then runs alone. The queue

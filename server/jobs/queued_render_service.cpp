@@ -14,7 +14,9 @@ using std::chrono::steady_clock;
 
 constexpr std::size_t remembered_failures = 1024;
 
-Error busy(const std::string& message) { return {"busy", message}; }
+Error busy(const std::string& message) {
+  return {"busy", message};
+}
 
 bool is_over(const RenderRecord& record) {
   return record.status != "queued" && record.status != "running";
@@ -53,7 +55,9 @@ QueuedRenderService::QueuedRenderService(const RenderServiceOptions& options)
     threads_.emplace_back([this] { work(); });
 }
 
-QueuedRenderService::~QueuedRenderService() { drain(0.0); }
+QueuedRenderService::~QueuedRenderService() {
+  drain(0.0);
+}
 
 std::set<std::string> QueuedRenderService::missing(const std::string& id,
                                                    const std::set<std::string>& wants,

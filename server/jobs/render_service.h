@@ -13,14 +13,14 @@ namespace penumbra::server {
 
 /// Where a render stands.
 struct RenderRecord {
-  std::string id;               ///< hash of the canonical request: also cache key and ETag
-  std::string status;           ///< queued, running, done, failed, cancelled
-  double progress = 0.0;        ///< 0..1
-  nlohmann::json request;       ///< canonical, every default filled in
-  nlohmann::json device;        ///< {"name","driver","type"}, null until a worker took it
-  nlohmann::json error;         ///< null or {"code","message","field"}
-  nlohmann::json cost;          ///< null unless measured
-  nlohmann::json quality;       ///< null unless measured
+  std::string id;          ///< hash of the canonical request: also cache key and ETag
+  std::string status;      ///< queued, running, done, failed, cancelled
+  double progress = 0.0;   ///< 0..1
+  nlohmann::json request;  ///< canonical, every default filled in
+  nlohmann::json device;   ///< {"name","driver","type"}, null until a worker took it
+  nlohmann::json error;    ///< null or {"code","message","field"}
+  nlohmann::json cost;     ///< null unless measured
+  nlohmann::json quality;  ///< null unless measured
   std::vector<std::string> notes;
 };
 
@@ -32,9 +32,10 @@ class RenderService {
  public:
   virtual ~RenderService() = default;
 
-  /// Takes a request as the API has it (scene, technique, parameters, width, ...), checks it (throws
-  /// Error: bad_value naming the field, not_found, unsupported, or `busy` when the queue is full),
-  /// and answers the record: done if cached, shared if the same request is already in flight.
+  /// Takes a request as the API has it (scene, technique, parameters, width, ...), checks it
+  /// (throws Error: bad_value naming the field, not_found, unsupported, or `busy` when the queue is
+  /// full), and answers the record: done if cached, shared if the same request is already in
+  /// flight.
   virtual RenderRecord submit(const nlohmann::json& request) = 0;
 
   /// As it stands now; empty for an unknown id.
@@ -43,7 +44,8 @@ class RenderService {
   /// Blocks until the render is over or `seconds` (steady clock) have passed.
   virtual std::optional<RenderRecord> wait(const std::string& id, double seconds) = 0;
 
-  /// Blocks until status or progress differs from `seen` or `seconds` have passed: for event streams.
+  /// Blocks until status or progress differs from `seen` or `seconds` have passed: for event
+  /// streams.
   virtual std::optional<RenderRecord> wait_change(const std::string& id, const RenderRecord& seen,
                                                   double seconds) = 0;
 
@@ -63,11 +65,11 @@ class RenderService {
 };
 
 struct RenderServiceOptions {
-  std::filesystem::path data;      ///< artefacts under data/artefacts, driver cache under data/driver
-  std::string device;              ///< as RendererOptions::device
+  std::filesystem::path data;  ///< artefacts under data/artefacts, driver cache under data/driver
+  std::string device;          ///< as RendererOptions::device
   unsigned workers = 1;
   unsigned queue_limit = 256;
-  double deadline_s = 300.0;       ///< per render
+  double deadline_s = 300.0;  ///< per render
   std::uint64_t cache_bytes = 4ull << 30;
   bool validation = false;
   /// Starts a worker; default is this very program with the argument `worker`.

@@ -20,13 +20,17 @@ enum class Kind { text, integer, boolean };
 
 /// Keys of a request that text can set; every other name is a parameter of the technique.
 const std::map<std::string, Kind>& request_keys() {
-  static const std::map<std::string, Kind> keys{
-      {"scene", Kind::text},         {"technique", Kind::text},
-      {"camera", Kind::text},        {"diagnostic", Kind::text},
-      {"width", Kind::integer},      {"height", Kind::integer},
-      {"supersampling", Kind::integer}, {"light_samples", Kind::integer},
-      {"seed", Kind::integer},       {"frames", Kind::integer},
-      {"measure", Kind::boolean}};
+  static const std::map<std::string, Kind> keys{{"scene", Kind::text},
+                                                {"technique", Kind::text},
+                                                {"camera", Kind::text},
+                                                {"diagnostic", Kind::text},
+                                                {"width", Kind::integer},
+                                                {"height", Kind::integer},
+                                                {"supersampling", Kind::integer},
+                                                {"light_samples", Kind::integer},
+                                                {"seed", Kind::integer},
+                                                {"frames", Kind::integer},
+                                                {"measure", Kind::boolean}};
   return keys;
 }
 
@@ -82,8 +86,8 @@ void add_light_override(json& request, const std::string& path, const std::strin
   const std::string field = "lights." + path;
   const std::size_t dot = path.find('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == path.size())
-    throw bad_value(field, "a light is changed by NAME.key=value, as in key.intensity=2, not \"" +
-                               path + "\"");
+    throw bad_value(
+        field, "a light is changed by NAME.key=value, as in key.intensity=2, not \"" + path + "\"");
   // A key may lie deeper: NAME.extent.radius.
   json* place = &request["lights"][path.substr(0, dot)];
   std::size_t begin = dot + 1;

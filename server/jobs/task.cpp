@@ -26,7 +26,9 @@ constexpr std::uint32_t fewest_frames = 1;
 /// The second reference for the noise estimate has this share of the first one's samples.
 constexpr std::uint32_t noise_share = 4;
 
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json number_or_null(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
 
 std::uint32_t frames_to_time(const CanonicalRequest& request, const Cost& first,
                              std::vector<std::string>& notes) {
@@ -62,8 +64,7 @@ json cost_to_json(const Cost& cost) {
     resources.push_back({{"name", resource.name}, {"bytes", resource.bytes}});
     bytes += resource.bytes;
   }
-  return {{"frame_ms",
-           {{"median", cost.median_ms}, {"p95", cost.p95_ms}, {"frames", cost.frames}}},
+  return {{"frame_ms", {{"median", cost.median_ms}, {"p95", cost.p95_ms}, {"frames", cost.frames}}},
           {"wall_median_ms", cost.wall_median_ms},
           {"create_ms", cost.create_ms},
           {"passes", passes},
@@ -127,7 +128,8 @@ json measure_noise(Renderer& renderer, const Task& task, const RenderResult& dra
 /// Maps the parts of a task onto one bar.
 class Parts {
  public:
-  Parts(const std::function<void(double)>& progress, int count) : progress_(progress), count_(count) {}
+  Parts(const std::function<void(double)>& progress, int count)
+      : progress_(progress), count_(count) {}
   std::function<void(double)> next() {
     const int part = part_++;
     return [this, part](double value) {

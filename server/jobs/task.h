@@ -32,8 +32,8 @@ bool needs_reference(const std::set<std::string>& wants);
 /// The reference that a picture is judged against.
 struct ReferencePictures {
   std::string id;
-  std::string image;       ///< PNG
-  std::string visibility;  ///< EXR
+  std::string image;           ///< PNG
+  std::string visibility;      ///< EXR
   nlohmann::json noise_rms_y;  ///< null where unknown
 };
 

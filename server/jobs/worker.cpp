@@ -83,9 +83,8 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
   };
   TaskResult result = run_task(renderer, task, progress);
   Message reply;
-  reply.body["done"] = {{"cost", result.cost},
-                        {"quality", result.quality},
-                        {"notes", result.notes}};
+  reply.body["done"] = {
+      {"cost", result.cost}, {"quality", result.quality}, {"notes", result.notes}};
   // Absent and null differ: not asked for, and not to be known.
   if (task.wants.contains(want::noise)) reply.body["done"]["noise_rms_y"] = result.noise_rms_y;
   reply.blobs = std::move(result.artefacts);
@@ -110,10 +109,11 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
     write_message(channel, {error_body(device_error(error.what()), true), {}});
     end(1);
   }
-  write_message(channel, {{{"hello",
-                            {{"renderer", renderer_version()},
-                             {"device", device_to_json(renderer->device())}}}},
-                          {}});
+  write_message(
+      channel,
+      {{{"hello",
+         {{"renderer", renderer_version()}, {"device", device_to_json(renderer->device())}}}},
+       {}});
 
   MessageReader reader(STDIN_FILENO);
   Message message;

@@ -19,7 +19,8 @@ struct WorkerOptions {
 ///   worker: {"hello":{"renderer","device"}}  or  {"error":{..},"fatal":true} and the end
 ///   server: {"task":{"request","id","wants","frames"},"reference":{"id","noise_rms_y"}} and the
 ///           reference's files
-///   worker: {"progress":0.5} ..., then {"done":{"cost","quality","noise_rms_y","notes"}} and files,
+///   worker: {"progress":0.5} ..., then {"done":{"cost","quality","noise_rms_y","notes"}} and
+///   files,
 ///           or {"error":{"code","message","field"},"fatal":false}
 /// After a fatal error the worker ends by itself, without asking the driver to tidy up: that may
 /// wait for a queue that never finishes.

@@ -12,8 +12,8 @@
 
 namespace penumbra::server {
 
-/// Starts workers and decides when to try again: after failures in a row it waits, longer each time,
-/// so that a driver which crashes at once does not keep the machine busy. Thread-safe.
+/// Starts workers and decides when to try again: after failures in a row it waits, longer each
+/// time, so that a driver which crashes at once does not keep the machine busy. Thread-safe.
 class WorkerCrew {
  public:
   explicit WorkerCrew(WorkerCommand command) : command_(std::move(command)) {}

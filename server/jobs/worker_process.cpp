@@ -83,8 +83,8 @@ pid_t spawn(const WorkerCommand& command, int input, int output) {
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
-                                            POSIX_SPAWN_SETSIGDEF);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   pid_t process = -1;
   const int failure =
       ::posix_spawnp(&process, arguments.front().c_str(), &actions, &attributes,
@@ -129,7 +129,9 @@ WorkerProcess::WorkerProcess(const WorkerCommand& command) {
   }
 }
 
-WorkerProcess::~WorkerProcess() { kill(); }
+WorkerProcess::~WorkerProcess() {
+  kill();
+}
 
 void WorkerProcess::kill() {
   if (process_ > 0) {

@@ -14,7 +14,8 @@
 
 namespace penumbra::server {
 
-/// The worker is gone: crashed, killed, or not speaking the protocol. Its request may be tried again.
+/// The worker is gone: crashed, killed, or not speaking the protocol. Its request may be tried
+/// again.
 class WorkerLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -56,7 +57,8 @@ class WorkerProcess {
  private:
   void kill();
   [[noreturn]] void lost(const std::string& during);
-  Message read(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& cancelled);
+  Message read(std::chrono::steady_clock::time_point deadline,
+               const std::function<bool()>& cancelled);
   [[noreturn]] void raise(const nlohmann::json& body);
 
   pid_t process_ = -1;
