@@ -1,9 +1,96 @@
 #include "scenes/library.h"
 
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
 #include "renderer/error.h"
 #include "scenes/built_in/built_in.h"
+#include "scenes/document.h"
+#include "scenes/import/import.h"
 
 namespace penumbra::scenes {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower_extension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_scene_file(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".gltf" || extension == ".glb" || extension == ".obj" || extension == ".json";
+}
+
+Scene load_file(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  try {
+    Scene scene;
+    if (extension == ".json")
+      scene = read_document(parse_json(read_bytes(file), "the scene document"),
+                            file.has_parent_path() ? file.parent_path() : fs::path("."));
+    else
+      scene = extension == ".obj" ? import_obj(file) : import_gltf(file);
+    validate(scene);
+    return scene;
+  } catch (const Error& error) {
+    // The file's name alone: where it lies is nobody's business who asks over HTTP.
+    throw Error(error.code, file.filename().string() + ": " + error.what(), error.field);
+  } catch (const std::bad_alloc&) {
+    throw unreadable(file.filename().string() + ": needs more memory than there is");
+  }
+}
+
+/// An imported id is one path component of letters, digits, - and _.
+bool is_id(const std::string& name) {
+  return !name.empty() && name.size() <= 64 &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+}
+
+/// Main file of an imported scene: data/scenes/ID.EXT, or the one scene file in data/scenes/ID/.
+fs::path imported_file(const std::string& id, const fs::path& data) {
+  std::error_code ignored;
+  for (const char* extension : {".glb", ".gltf", ".json", ".obj"})
+    if (const fs::path file = data / "scenes" / (id + extension);
+        fs::is_regular_file(file, ignored))
+      return file;
+  const fs::path folder = data / "scenes" / id;
+  std::vector<fs::path> found;
+  if (!fs::is_directory(folder, ignored)) return {};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file(ignored) && is_scene_file(entry.path()))
+      found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  // A binary file before the others; what lies deeper may be what the main file names.
+  std::stable_sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
+    const auto rank = [](const fs::path& file) {
+      return 10 * std::distance(file.begin(), file.end()) +
+             (lower_extension(file) == ".json" ? 1 : 0);
+    };
+    return rank(a) < rank(b);
+  });
+  return found.empty() ? fs::path() : found.front();
+}
+
+std::string known_names(const fs::path& data) {
+  std::string names;
+  for (const BuiltIn& entry : built_in_table()) names += std::string(entry.id) + ", ";
+  std::error_code ignored;
+  std::vector<std::string> imported;
+  if (!data.empty() && fs::is_directory(data / "scenes", ignored))
+    for (const fs::directory_entry& entry : fs::directory_iterator(data / "scenes"))
+      imported.push_back(entry.path().stem().string());
+  std::sort(imported.begin(), imported.end());
+  for (const std::string& id : imported)
+    if (is_id(id)) names += id + ", ";
+  return names + "sweep:OxTxL, or the path of a .json, .gltf, .glb or .obj file";
+}
+
+}  // namespace
 
 std::vector<SceneInfo> built_in() {
   std::vector<SceneInfo> list;
@@ -12,19 +99,27 @@ std::vector<SceneInfo> built_in() {
   return list;
 }
 
-std::shared_ptr<const Scene> load(const std::string& name, const std::filesystem::path& data) {
-  (void)data;
+std::shared_ptr<const Scene> load(const std::string& name, const fs::path& data) {
   const auto finish = [](Scene scene) {
     validate(scene);
     return std::make_shared<const Scene>(std::move(scene));
   };
   if (name.rfind("sweep:", 0) == 0) return finish(make_sweep(name));
-  std::string names;
-  for (const BuiltIn& entry : built_in_table()) {
+  for (const BuiltIn& entry : built_in_table())
     if (name == entry.id) return finish(entry.make());
-    names += std::string(names.empty() ? "" : ", ") + entry.id;
+  if (!data.empty() && is_id(name)) {
+    if (const fs::path file = imported_file(name, data); !file.empty()) {
+      Scene scene = load_file(file);
+      scene.id = name;
+      return std::make_shared<const Scene>(std::move(scene));
+    }
   }
-  throw not_found("scene", "no scene '" + name + "'; there are: " + names + ", sweep:OxTxL");
+  std::error_code ignored;
+  if (name.find('\0') == std::string::npos && is_scene_file(name) &&
+      fs::is_regular_file(name, ignored))
+    return std::make_shared<const Scene>(load_file(name));
+  throw not_found("scene",
+                  "no scene '" + name.substr(0, 200) + "'; there are: " + known_names(data));
 }
 
 }  // namespace penumbra::scenes

@@ -19,9 +19,10 @@ struct SceneInfo {
 /// Built-in scenes, survey scenes first, in a stable order.
 std::vector<SceneInfo> built_in();
 
-/// Loads SCENE as the contract has it: a built-in id, an imported id (data/scenes/<id>), a path to a
-/// scene JSON, glTF, GLB or OBJ file, or `sweep:OxTxL`. `data` may be empty (no imported scenes).
-/// Throws not_found (field "scene", listing the ids there are) or unreadable naming file and element.
+/// Loads SCENE as the contract has it: a built-in id, an imported id (data/scenes/<id>), a path to
+/// a scene JSON, glTF, GLB or OBJ file, or `sweep:OxTxL`. `data` may be empty (no imported scenes).
+/// Throws not_found (field "scene", listing the ids there are) or unreadable naming file and
+/// element.
 std::shared_ptr<const Scene> load(const std::string& name, const std::filesystem::path& data = {});
 
 /// Hash of everything in the scene that can change a picture, 32 hexadecimal digits: equal scenes

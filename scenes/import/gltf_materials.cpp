@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "renderer/error.h"
+#include "scenes/import/gltf.h"
+#include "scenes/picture_io.h"
+
+namespace penumbra::scenes::gltf {
+namespace {
+
+double number_of(const tinygltf::Value& object, const char* key, double otherwise) {
+  if (!object.IsObject() || !object.Has(key)) return otherwise;
+  const tinygltf::Value& value = object.Get(key);
+  const double number = value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+  return std::isfinite(number) ? number : otherwise;
+}
+
+glm::dvec2 pair_of(const tinygltf::Value& object, const char* key, const glm::dvec2& otherwise) {
+  if (!object.IsObject() || !object.Has(key)) return otherwise;
+  const tinygltf::Value& value = object.Get(key);
+  if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(0).IsNumber() ||
+      !value.Get(1).IsNumber())
+    return otherwise;
+  return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
+}
+
+float share(double value, double otherwise) {
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise);
+}
+
+/// Bytes of an encoded image: kept by the parser, or in a buffer view.
+std::string_view encoded_image(const tinygltf::Model& model, const tinygltf::Image& image,
+                               const std::string& where) {
+  if (image.bufferView < 0)
+    return {reinterpret_cast<const char*>(image.image.data()), image.image.size()};
+  if (static_cast<std::size_t>(image.bufferView) >= model.bufferViews.size())
+    throw unreadable(where + " names no buffer view", where);
+  const auto& view = model.bufferViews[static_cast<std::size_t>(image.bufferView)];
+  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
+    throw unreadable(where + ": its buffer view names no buffer", where);
+  const auto& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+  if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset)
+    throw unreadable(where + ": its buffer view reaches beyond the buffer", where);
+  return {reinterpret_cast<const char*>(bytes.data()) + view.byteOffset, view.byteLength};
+}
+
+/// Decodes an image once and only if a material shows it.
+class Textures {
+ public:
+  Textures(const tinygltf::Model& model_, Scene& scene_) : model(model_), scene(scene_) {}
+
+  int use(int texture, const std::string& where) {
+    if (texture < 0) return -1;
+    if (static_cast<std::size_t>(texture) >= model.textures.size())
+      throw unreadable(where + " names no texture", where);
+    const int source = model.textures[static_cast<std::size_t>(texture)].source;
+    if (source < 0) {
+      scene.notes.push_back(where + " has no image that can be read: it is left out");
+      return -1;
+    }
+    if (static_cast<std::size_t>(source) >= model.images.size())
+      throw unreadable(element("textures", static_cast<std::size_t>(texture)) + " names no image");
+    const auto [entry, added] = known.try_emplace(source, -1);
+    if (added) entry->second = decode(static_cast<std::size_t>(source));
+    return entry->second;
+  }
+
+ private:
+  int decode(std::size_t index) {
+    const tinygltf::Image& image = model.images[index];
+    const std::string where = element("images", index, image.name);
+    const std::string_view bytes = encoded_image(model, image, where);
+    if (bytes.empty()) {
+      scene.notes.push_back(where + " is missing" +
+                            (image.uri.empty() ? "" : " ('" + image.uri + "')") +
+                            ": it is left out");
+      return -1;
+    }
+    try {
+      Image8 picture = decode_picture(bytes);
+      scene.textures.push_back(
+          {image.name, picture.width, picture.height, std::move(picture.pixels)});
+    } catch (const Error& error) {
+      throw unreadable(where + ": " + error.what(), where);
+    }
+    return static_cast<int>(scene.textures.size()) - 1;
+  }
+
+  const tinygltf::Model& model;
+  Scene& scene;
+  std::map<int, int> known;
+};
+
+TextureUse use_of(int set, const tinygltf::ExtensionMap& extensions) {
+  TextureUse use;
+  use.set = std::clamp(set, 0, 15);
+  const auto found = extensions.find("KHR_texture_transform");
+  if (found == extensions.end()) return use;
+  use.offset = pair_of(found->second, "offset", {0.0, 0.0});
+  use.scale = pair_of(found->second, "scale", {1.0, 1.0});
+  use.rotation = number_of(found->second, "rotation", 0.0);
+  use.set = std::clamp(static_cast<int>(number_of(found->second, "texCoord", use.set)), 0, 15);
+  return use;
+}
+
+/// Blinn-Phong's exponent with the lobe of a microfacet roughness: 2 / alpha^2 - 2, alpha =
+/// roughness^2 (Walter et al. 2007, section 5.2, for the Phong distribution), no sharper than 256.
+float shininess_of(double roughness) {
+  const double alpha = std::max(roughness * roughness, 1e-3);
+  return static_cast<float>(std::clamp(2.0 / (alpha * alpha) - 2.0, 1.0, 256.0));
+}
+
+glm::vec3 color_of(const std::vector<double>& factor) {
+  glm::vec3 color(1.0f);
+  for (int c = 0; c < 3 && c < static_cast<int>(factor.size()); ++c)
+    color[c] = share(factor[static_cast<std::size_t>(c)], 1.0);
+  return color;
+}
+
+/// Older files: diffuse colour and texture by KHR_materials_pbrSpecularGlossiness.
+void read_diffuse(const tinygltf::Value& extension, Textures& textures, const std::string& where,
+                  Material& material, TextureUse& use) {
+  if (!extension.IsObject()) return;
+  if (extension.Has("diffuseFactor") && extension.Get("diffuseFactor").IsArray()) {
+    const tinygltf::Value& factor = extension.Get("diffuseFactor");
+    for (int c = 0; c < 3 && c < static_cast<int>(factor.ArrayLen()); ++c)
+      if (factor.Get(c).IsNumber())
+        material.base_color[c] = share(factor.Get(c).GetNumberAsDouble(), 1.0);
+  }
+  if (!extension.Has("diffuseTexture") || !extension.Get("diffuseTexture").IsObject()) return;
+  const tinygltf::Value& info = extension.Get("diffuseTexture");
+  material.texture =
+      textures.use(static_cast<int>(number_of(info, "index", -1.0)), where + ".diffuseTexture");
+  use = use_of(static_cast<int>(number_of(info, "texCoord", 0.0)), {});
+}
+
+Material read_material(const tinygltf::Material& from, Textures& textures, const std::string& where,
+                       TextureUse& use, Scene& scene) {
+  Material material;
+  material.name = from.name;
+  const auto& pbr = from.pbrMetallicRoughness;
+  material.base_color = color_of(pbr.baseColorFactor);
+  if (pbr.baseColorFactor.size() == 4) material.alpha = share(pbr.baseColorFactor[3], 1.0);
+  material.texture = textures.use(pbr.baseColorTexture.index, where + ".baseColorTexture");
+  use = use_of(pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions);
+  const float metallic = share(pbr.metallicFactor, 1.0);
+  const bool textured_metal = pbr.metallicRoughnessTexture.index >= 0;
+  material.specular = textured_metal ? 0.06f : 0.04f + 0.26f * metallic;
+  material.shininess =
+      shininess_of(textured_metal ? 0.6 : static_cast<double>(share(pbr.roughnessFactor, 1.0)));
+  if (from.emissiveFactor.size() == 3)
+    for (int c = 0; c < 3; ++c)
+      material.emissive[c] = share(from.emissiveFactor[static_cast<std::size_t>(c)], 0.0);
+  if (from.emissiveTexture.index >= 0) {
+    material.emissive = glm::vec3(0.0f);
+    scene.notes.push_back(where + ": its emissive texture is left out");
+  }
+  if (from.extensions.count("KHR_materials_unlit") != 0)
+    scene.notes.push_back(where + " is unlit in the file and lit here");
+  const auto older = from.extensions.find("KHR_materials_pbrSpecularGlossiness");
+  if (older != from.extensions.end()) read_diffuse(older->second, textures, where, material, use);
+  if (from.alphaMode == "MASK" || from.alphaMode == "BLEND") {
+    material.alpha_mode = AlphaMode::mask;
+    material.alpha_cutoff = from.alphaMode == "MASK" ? share(from.alphaCutoff, 0.5) : 0.5f;
+  }
+  if (from.alphaMode == "BLEND")
+    scene.notes.push_back(where + " is blended in the file and cut at half its alpha here");
+  material.double_sided = from.doubleSided;
+  return material;
+}
+
+}  // namespace
+
+std::vector<TextureUse> read_materials(const tinygltf::Model& model, Scene& scene) {
+  Textures textures(model, scene);
+  std::vector<TextureUse> uses;
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    TextureUse use;
+    const std::string where = element("materials", i, model.materials[i].name);
+    scene.materials.push_back(read_material(model.materials[i], textures, where, use, scene));
+    uses.push_back(use);
+  }
+  Material plain;
+  plain.name = "default";
+  scene.materials.push_back(plain);
+  uses.push_back({});
+  return uses;
+}
+
+}  // namespace penumbra::scenes::gltf
