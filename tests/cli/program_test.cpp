@@ -1,0 +1,232 @@
+// Runs the built program as a person or a script would.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "renderer/image.h"
+#include "scenes/library.h"
+#include "scenes/picture_io.h"
+#include "server/jobs/durable_file.h"
+#include "techniques/registry.h"
+#include "tests/jobs/temporary_folder.h"
+
+namespace {
+
+using nlohmann::json;
+using penumbra::server::read_whole;
+using testing::HasSubstr;
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+class ProgramTest : public testing::Test {
+ protected:
+  /// Runs `penumbra ARGUMENTS` in a folder of its own; references stay in one cache for all.
+  Outcome run(const std::string& arguments, const std::string& environment = "") {
+    const std::string err = (folder.path() / "stderr").string();
+    const std::string command = "cd '" + folder.path().string() + "' && " + environment +
+                                " XDG_CACHE_HOME='" + PENUMBRA_BINARY_DIR + "/test-cache' '" +
+                                PENUMBRA_PROGRAM + "' " + arguments + " 2>'" + err + "'";
+    Outcome outcome;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    char piece[4096];
+    for (std::size_t n = 0; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;)
+      outcome.out.append(piece, n);
+    const int status = ::pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    outcome.err = read_whole(err).value_or("");
+    return outcome;
+  }
+
+  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(ProgramTest, answers_wrong_usage_with_state_2_and_the_argument_at_fault) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "subcommand"},
+      {"paint", "paint"},
+      {"render", "SCENE"},
+      {"render boxes none --width 0", "width must be an integer from 1 to 8192"},
+      {"render boxes none --width 1e3", "width"},
+      {"render boxes none --height 100000", "height"},
+      {"render boxes none --supersampling 2", "1, 4, 16"},
+      {"render boxes none --set nonsense", "--set takes name=value"},
+      {"render boxes none --set nonsense=1", "nonsense"},
+      {"render boxes none --light nonsense=1", "lights.nonsense"},
+      {"render boxes none --out picture.bmp", ".png"},
+      {"render no-such-scene none", "half-plane"},
+      {"render boxes no-such-technique", "none"},
+      {"render boxes none --colour red", "--colour"},
+      {"measure boxes none --frames 0", "frames"},
+      {"compare a.png b.png", "a.png"},
+      {"serve --port 70000", "--port"},
+      {"statistics", "RESPONSES"}};
+  for (const auto& [arguments, named] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(named)) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+  }
+}
+
+TEST_F(ProgramTest, lists_exactly_the_scenes_and_techniques_there_are) {
+  const json scenes = json::parse(run("scenes --json").out);
+  std::vector<std::string> ids;
+  for (const json& scene : scenes.at("scenes")) ids.push_back(scene.at("id"));
+  std::vector<std::string> built_in;
+  for (const auto& info : penumbra::scenes::built_in()) built_in.push_back(info.id);
+  EXPECT_EQ(ids, built_in);
+
+  const json techniques = json::parse(run("techniques --json").out);
+  ASSERT_EQ(techniques.at("techniques").size(), penumbra::techniques::all().size());
+  for (const json& technique : techniques.at("techniques"))
+    EXPECT_EQ(technique.at("parameters").at("type"), "object");
+  EXPECT_THAT(run("techniques").out, HasSubstr("shadow-map"));
+}
+
+TEST_F(ProgramTest, prints_one_json_document_also_when_it_fails) {
+  const Outcome outcome = run("render boxes none --width 0 --json");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(json::parse(outcome.out).at("error").at("field"), "width");
+}
+
+TEST_F(ProgramTest, draws_a_picture_of_the_size_asked_for) {
+  const Outcome outcome =
+      run("render half-plane none --width 80 --height 60 --out p.png --visibility v.exr --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json record = json::parse(outcome.out);
+  EXPECT_EQ(record.at("status"), "done");
+  EXPECT_EQ(record.at("request").at("width"), 80);
+  EXPECT_TRUE(record.at("device").at("name").is_string());
+  EXPECT_EQ(record.at("links").at("out"), "p.png");
+
+  const penumbra::Image8 picture = penumbra::scenes::read_picture(path("p.png"));
+  EXPECT_EQ(picture.width, 80u);
+  EXPECT_EQ(picture.height, 60u);
+  const penumbra::ImageF visibility = penumbra::scenes::decode_exr(*read_whole(path("v.exr")));
+  EXPECT_EQ(visibility.width, 80u);
+  // Without a technique everything is lit.
+  for (const float value : visibility.pixels) ASSERT_EQ(value, 1.0f);
+}
+
+TEST_F(ProgramTest, draws_the_same_bytes_every_time) {
+  ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out a.png").status, 0);
+  ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out b.png").status, 0);
+  EXPECT_EQ(read_whole(path("a.png")), read_whole(path("b.png")));
+}
+
+TEST_F(ProgramTest, writes_every_format_it_names) {
+  for (const std::string name : {"p.png", "p.jpg", "p.tif", "p.exr"}) {
+    const Outcome outcome = run("render half-plane none --width 32 --height 32 --out " + name);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_GT(std::filesystem::file_size(path(name)), 100u) << name;
+  }
+  const auto tif = penumbra::scenes::read_picture(path("p.tif"));
+  EXPECT_EQ(tif.pixels, penumbra::scenes::read_picture(path("p.png")).pixels);
+}
+
+TEST_F(ProgramTest, measures_cost_and_error) {
+  const Outcome outcome =
+      run("measure half-plane none --width 64 --height 64 --light-samples 64 --frames 3 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json record = json::parse(outcome.out);
+  const json& cost = record.at("cost");
+  EXPECT_EQ(cost.at("frame_ms").at("frames"), 3);
+  EXPECT_GT(cost.at("frame_ms").at("median").get<double>(), 0.0);
+  EXPECT_LE(cost.at("frame_ms").at("median"), cost.at("frame_ms").at("p95"));
+  EXPECT_EQ(cost.at("memory").at("over_none_bytes"), 0);  // `none` adds nothing over itself
+  EXPECT_FALSE(cost.at("passes").empty());
+
+  // Without shadows the error can only be shadow that is missing.
+  const json& quality = record.at("quality");
+  EXPECT_GT(quality.at("rms_y").get<double>(), 1.0);
+  EXPECT_GT(quality.at("visibility_bias").get<double>(), 0.0);
+  EXPECT_EQ(quality.at("false_shadow"), 0.0);
+  EXPECT_GT(quality.at("missing_shadow").get<double>(), 0.05);
+  EXPECT_LT(quality.at("reference_noise_rms_y").get<double>(), quality.at("rms_y").get<double>());
+  EXPECT_EQ(quality.at("reference_id").get<std::string>().size(), 32u);
+}
+
+TEST_F(ProgramTest, finds_no_error_in_the_reference_itself) {
+  const Outcome outcome = run(
+      "measure half-plane reference --width 64 --height 64 --light-samples 64 --frames 1 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json record = json::parse(outcome.out);
+  EXPECT_EQ(record.at("quality").at("rms_y"), 0.0);
+  EXPECT_EQ(record.at("quality").at("visibility_rms"), 0.0);
+  EXPECT_EQ(record.at("quality").at("reference_id"), record.at("id"));
+}
+
+TEST_F(ProgramTest, compares_pictures_as_their_closed_forms_say) {
+  // Every pixel of Y differs by 10; PSNR = 20 log10(255 / 10).
+  penumbra::scenes::write_picture(path("a.png"), penumbra::Image8(16, 16, 3, 100));
+  penumbra::scenes::write_picture(path("b.png"), penumbra::Image8(16, 16, 3, 110));
+  const json apart = json::parse(run("compare a.png b.png --json").out);
+  EXPECT_NEAR(apart.at("rms_y").get<double>(), 10.0, 1e-9);
+  EXPECT_NEAR(apart.at("psnr").get<double>(), 28.1308036086791, 1e-9);
+  const json equal = json::parse(run("compare a.png a.png --json").out);
+  EXPECT_EQ(equal.at("rms_y"), 0.0);
+  EXPECT_TRUE(equal.at("psnr").is_null());
+  EXPECT_NEAR(equal.at("ssim").get<double>(), 1.0, 1e-12);
+
+  penumbra::scenes::write_picture(path("c.png"), penumbra::Image8(8, 16, 3, 110));
+  EXPECT_EQ(run("compare a.png c.png").status, 2);
+}
+
+TEST_F(ProgramTest, exports_a_scene_that_comes_back_the_same) {
+  ASSERT_EQ(run("export-scene half-plane --out half.glb").status, 0);
+  const Outcome imported = run("import half.glb --id mine --data store --json");
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  const auto original = penumbra::scenes::load("half-plane");
+  EXPECT_EQ(json::parse(imported.out).at("hash"), penumbra::scenes::content_hash(*original));
+  EXPECT_THAT(run("scenes --data store").out, HasSubstr("mine"));
+  const Outcome drawn = run("render mine none --data store --width 32 --height 32 --json");
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(run("import half.glb --id ../mine --data store").status, 2);
+  EXPECT_EQ(run("import half.glb --id boxes --data store").status, 2);
+}
+
+TEST_F(ProgramTest, analyses_answers) {
+  std::ofstream csv(path("r.csv"));
+  csv << "participant,scene,technique,rank_1_is_most_realistic,difficulty_1_hard_to_see_5_easy\n";
+  for (int person = 0; person < 12; ++person)
+    csv << person << ",s,good," << 1 << ",3\n"
+        << person << ",s,bad," << (person == 0 ? 1 : 2) << ",3\n";
+  csv.close();
+  const Outcome outcome = run("statistics r.csv --out results --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json scene = json::parse(outcome.out).at("included_sets").at("all").at("scenes").at(0);
+  EXPECT_EQ(scene.at("techniques").at(0).at("technique"), "good");
+  EXPECT_TRUE(std::filesystem::exists(path("results/results.json")));
+}
+
+TEST_F(ProgramTest, finds_this_machine_able_to_work) {
+  const Outcome outcome = run("doctor --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.out;
+  const json report = json::parse(outcome.out);
+  EXPECT_TRUE(report.at("works"));
+  EXPECT_FALSE(report.at("devices").empty());
+}
+
+TEST_F(ProgramTest, says_which_device_is_not_there) {
+  const Outcome outcome =
+      run("render half-plane none --device no-such-device --width 8 --height 8");
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("no-such-device"));
+}
+
+TEST_F(ProgramTest, takes_options_from_the_environment) {
+  const Outcome outcome = run("render half-plane none --height 20 --json", "PENUMBRA_WIDTH=24");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out).at("request").at("width"), 24);
+}
+
+}  // namespace
