@@ -23,9 +23,9 @@ std::string media_type(const std::string& name) {
 }
 
 bool plain_name(const std::string& name) {
-  return !name.empty() && name.front() != '.' &&
-         std::none_of(name.begin(), name.end(),
-                      [](char c) { return c == '/' || c == '\\' || c == '\0'; });
+  return !name.empty() && name.front() != '.' && std::none_of(name.begin(), name.end(), [](char c) {
+    return c == '/' || c == '\\' || c == '\0';
+  });
 }
 
 std::optional<std::string> page_file(const Service& service, const std::string& folder,
@@ -70,10 +70,11 @@ void open_session(Call& call) {
     count_failure(call.service, call.request);
     throw Error("unauthorized", "this is not the researcher's token", "token");
   }
-  const bool encrypted = call.request.get_header_value("X-Forwarded-Proto") == "https";
-  call.response.set_header(
-      "Set-Cookie", std::string(session_cookie) + "=" + session_of(call.service.token) +
-                        "; Path=/; HttpOnly; SameSite=Strict" + (encrypted ? "; Secure" : ""));
+  std::string cookie = session_cookie;
+  cookie.append("=").append(session_of(call.service.token));
+  cookie.append("; Path=/; HttpOnly; SameSite=Strict");
+  if (call.request.get_header_value("X-Forwarded-Proto") == "https") cookie.append("; Secure");
+  call.response.set_header("Set-Cookie", cookie);
   call.response.status = 303;
   call.response.set_header("Location", "/lab");
 }

@@ -136,6 +136,7 @@ void Database::run_batch(const std::vector<Pending*>& batch) {
       }
     }
     transaction.commit();
+    if (purge_wanted.exchange(false)) writer->exec("PRAGMA wal_checkpoint(TRUNCATE)");
   } catch (...) {
     for (auto* pending : batch)
       if (!pending->failure) pending->failure = std::current_exception();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <SQLiteCpp/Savepoint.h>
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/Savepoint.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -60,6 +60,9 @@ class Database {
     });
   }
 
+  /// From within a change: once it is committed, what it deleted also leaves the write-ahead log.
+  void purge_log() { purge_wanted = true; }
+
   bool healthy() const { return !damaged.load(); }
 
  private:
@@ -94,6 +97,7 @@ class Database {
 
   std::filesystem::path path;
   std::atomic<bool> damaged{false};
+  std::atomic<bool> purge_wanted{false};
   std::unique_ptr<SQLite::Database> writer;  ///< used by the writer's thread only
   std::mutex queue_mutex;
   std::condition_variable queue_changed;

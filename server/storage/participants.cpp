@@ -288,6 +288,7 @@ bool Participants::withdraw(const std::string& code, const std::string& now) {
     SQLite::Statement remove(connection, "DELETE FROM participants WHERE id = ?");
     remove.bind(1, person->key);
     remove.exec();
+    database.purge_log();
     if (person->test) return true;
     SQLite::Statement note(
         connection, "INSERT INTO withdrawals (study, version, withdrawn_at) VALUES (?, ?, ?)");
