@@ -8,6 +8,7 @@
 #include "study/statistics/analysis.h"
 #include "study/statistics/screening.h"
 #include "study/statistics/survey_data.h"
+#include "study/statistics/worths.h"
 
 namespace penumbra::study {
 
@@ -56,34 +57,43 @@ Selection inverted_turned(const SurveyData& data, const std::vector<Flag>& flags
   return selection;
 }
 
+json analyse_part(const SurveyData& data, const Selection& selection,
+                  std::optional<std::size_t> scene, double alpha) {
+  json part = statistics::analyse(data, participant_table(data, selection, scene), alpha);
+  std::vector<std::string> techniques;
+  for (const json& row : part["techniques"]) techniques.push_back(row["technique"]);
+  part["plackett_luce"] = statistics::worths_json(data, selection, scene, techniques);
+  return part;
+}
+
 json analyse_set(const SurveyData& data, const Selection& selection, double alpha) {
   json scenes = json::array();
   for (std::size_t scene = 0; scene < data.scenes.size(); ++scene) {
-    json entry = statistics::analyse(data, participant_table(data, selection, scene), alpha);
-    entry["scene"] = data.scenes[scene];
-    scenes.push_back(std::move(entry));
+    json part = analyse_part(data, selection, scene, alpha);
+    part["scene"] = data.scenes[scene];
+    scenes.push_back(std::move(part));
   }
-  return {{"scenes", scenes},
-          {"overall",
-           statistics::analyse(data, participant_table(data, selection, std::nullopt), alpha)}};
+  return {{"scenes", scenes}, {"overall", analyse_part(data, selection, std::nullopt, alpha)}};
 }
 
 json methods_json(const AnalysisPlan& plan) {
-  return {{"alpha", plan.alpha},
-          {"ranks", "mid-ranks among the pictures of a page"},
-          {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
-          {"repeats", "measure reliability only"},
-          {"weights", "difficulty 1 to 5; weighted mean sum(w r) / sum(w)"},
-          {"order", "by weighted mean rank"},
-          {"subsets", "maximal sets of techniques whose paired t does not differ, Bonferroni"},
-          {"quade", "a page's spread is the number of steps told apart"},
-          {"wilcoxon",
-           "zeros dropped; exact below 50 differences without ties or zeros, else "
-           "normal with tie and continuity correction"},
-          {"sign",
-           "ties dropped in p, half in probability_a_better and its Clopper-Pearson "
-           "interval"},
-          {"families", "all pairs of one table"}};
+  return {
+      {"alpha", plan.alpha},
+      {"ranks", "mid-ranks among the pictures of a page"},
+      {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
+      {"repeats", "measure reliability only"},
+      {"weights", "difficulty 1 to 5; weighted mean sum(w r) / sum(w)"},
+      {"order", "by weighted mean rank"},
+      {"subsets", "maximal sets of techniques whose paired t does not differ, Bonferroni"},
+      {"quade", "a page's spread is the number of steps told apart"},
+      {"wilcoxon",
+       "zeros dropped; exact below 50 differences without ties or zeros, else "
+       "normal with tie and continuity correction"},
+      {"sign",
+       "ties dropped in p, half in probability_a_better and its Clopper-Pearson "
+       "interval"},
+      {"plackett_luce", "maximum likelihood with ties, every page a ranking; log worths sum to 0"},
+      {"families", "all pairs of one table"}};
 }
 
 json notes_json(const SurveyData& data) {
