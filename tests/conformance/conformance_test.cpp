@@ -198,8 +198,8 @@ TEST_P(Conformance, comes_as_near_the_reference_as_its_folder_promises) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Conformance, testing::Range<std::size_t>(0, subjects().size()),
-                         [](const auto& info) {
-                           std::string name = subjects()[info.param].id;
+                         [](const auto& instance) {
+                           std::string name = subjects()[instance.param].id;
                            for (char& c : name)
                              if (c == '-') c = '_';
                            return name;
