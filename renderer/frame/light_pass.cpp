@@ -33,7 +33,11 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
   constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch);
   const std::uint32_t sets = setup_.side * setup_.side;
   const std::uint32_t batches = (points_per_set_ + batch_size - 1) / batch_size;
+  const VkDeviceSize constants_mark = frame.constants.mark();
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
+    // A light with many points is cut into submissions, so that it can report and be cancelled; what
+    // a finished batch pushed is free again.
+    if (batch > 0) frame.constants.rewind(constants_mark);
     const std::uint32_t first = batch * batch_size;
     const std::uint32_t count = std::min(batch_size, points_per_set_ - first);
     std::vector<glm::vec4> points(std::size_t{batch_size} * shader::max_supersampling,
@@ -47,14 +51,17 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
                     frame.constants.push(light_data(light_, static_cast<float>(count), weight)));
     bindings.buffer("LightPointBlock",
                     frame.constants.push_array(std::span<const glm::vec4>(points)));
+    const auto own_points = std::span<const glm::vec4>(points).first(sets * batch_size);
     PrepareContext context{input_,          setup_.scene,   light_,          setup_.matrices,
                            frame.geometry,  frame.device,   frame.pipelines, ledger_,
                            frame.constants, frame.recorder, bindings,        setup_.declarations,
-                           points,          count,          batch,           frame.frame_index,
-                           frame.notes};
+                           own_points,      count,          batch,           batches,         frame.frame_index,
+                           frame.notes,
+                           needs_.adjacency ? &setup_.scene.adjacency(frame.device) : nullptr};
     technique_->prepare(context);
     shade(frame, bindings, batch == 0);
     last_bindings_ = bindings;
+    if (needs_.light_points > 1) frame.recorder.flush();
     after_batch(static_cast<double>(batch + 1) / batches);
   }
 }

@@ -32,17 +32,20 @@ class PrepareContext {
   vulkan::Device& device;
   vulkan::PipelineCache& pipelines;
   vulkan::MemoryLedger& memory;
-  vulkan::ConstantArena& constants;  ///< of this frame
+  vulkan::ConstantArena& constants;  ///< of this batch
   vulkan::Recorder& recorder;
   const vulkan::Bindings&
       frame_bindings;                 ///< FrameBlock, LightBlock, LightPointBlock, ParameterBlock,
-                                      ///< geometry_position, geometry_words, MaterialBlock
+                                      ///< geometry_position, geometry_words, MaterialBlock, FaultBlock
   const std::string& declarations;    ///< GLSL of the parameters, for preambles of own programs
-  std::span<const glm::vec4> points;  ///< light points of this batch, sets of points_per_batch
+  std::span<const glm::vec4> points;  ///< light points of this batch: points_per_batch places for
+                                      ///< each sample of a pixel, points_in_batch of them in use
   std::uint32_t points_in_batch;
   std::uint32_t batch;
+  std::uint32_t batches;  ///< of this light in this frame
   std::uint32_t frame_index;
   std::vector<std::string>& notes;  ///< shown with the result; adding one twice is harmless
+  const SceneAdjacency* adjacency;  ///< where Requirements::adjacency asks for it, else null
 
   /// Records a timed pass. Passes of one name add up in the report.
   void pass(const std::string& name, const std::function<void(vulkan::Commands&)>& record) {

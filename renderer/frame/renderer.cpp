@@ -95,6 +95,12 @@ struct Renderer::State {
 
 namespace {
 
+/// As renderer/shaders/faults.glsl has it.
+struct FaultCounts {
+  std::uint32_t non_finite_pixels = 0;
+  std::uint32_t unfinished_invocations = 0;
+};
+
 /// The targets and passes of one render; lives for its frames.
 class FrameRun {
  public:
@@ -110,6 +116,8 @@ class FrameRun {
   vulkan::Image make_target(const char* name, VkFormat format, std::uint32_t width,
                             std::uint32_t height, std::uint32_t layers = 1);
   void read_results(RenderResult& result);
+  FaultCounts fault_counts() const;
+  void add_shared_memory(vulkan::MemoryLedger& memory) const;
 
   Renderer::State& state_;
   const RenderRequest& request_;
@@ -203,6 +211,7 @@ vulkan::Bindings FrameRun::frame_bindings(std::uint32_t index) {
   bindings.buffer("ParameterBlock",
                   state_.constants.push_array(std::span<const std::uint32_t>(words)));
   bindings.buffer("MaterialBlock", setup_.scene.material_buffer().whole());
+  bindings.buffer("FaultBlock", state_.faults.whole());
   bindings.texture("geometry_position", geometry_.position, Sampling::nearest);
   bindings.texture("geometry_words", geometry_.words, Sampling::nearest);
   return bindings;
@@ -231,10 +240,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
                                  notes_};
     const bool long_light = lights_[i]->needs().light_points > 1;
     lights_[i]->draw(frame, [&](double share) {
-      // A long frame is cut into submissions, so that it can report and be cancelled.
-      if (!long_light) return;
-      state_.recorder.flush();
-      if (progress_)
+      if (long_light && progress_)
         progress_((frame_ + (i + share) / static_cast<double>(lights_.size())) / frames_total_);
     });
     if (request_.visibility) resolve_visibility(bindings, i);
@@ -243,6 +249,15 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
   }
   resolve(bindings);
   state_.recorder.end();
+  if (fault_counts().unfinished_invocations > 0)
+    throw device_error("loops of " + std::to_string(fault_counts().unfinished_invocations) +
+                       " shader invocations ended before their work was done");
+}
+
+FaultCounts FrameRun::fault_counts() const {
+  FaultCounts counts;
+  std::memcpy(&counts, state_.faults.mapped(), sizeof(counts));
+  return counts;
 }
 
 void FrameRun::resolve(const vulkan::Bindings& bindings) {
@@ -259,7 +274,6 @@ void FrameRun::resolve(const vulkan::Bindings& bindings) {
   }
   vulkan::Bindings all = bindings;
   all.texture("radiance", geometry_.radiance, Sampling::nearest);
-  all.buffer("FaultBlock", state_.faults.whole());
   const vulkan::Pipeline& pipeline = state_.pipelines.graphics(source, state);
   state_.recorder.pass("resolve", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
@@ -324,18 +338,35 @@ void FrameRun::read_results(RenderResult& result) {
     }
   }
   if (diagnostic_) result.diagnostic = read_rgba8(state_.device, diagnostic_);
-  std::uint32_t faults = 0;
-  std::memcpy(&faults, state_.faults.mapped(), sizeof(faults));
-  result.non_finite_pixels = faults;
+  result.non_finite_pixels = fault_counts().non_finite_pixels;
   vulkan::MemoryLedger memory;
   for (const auto& light : lights_)
     for (const ResourceCost& resource : light->memory()) memory.add(resource.name, resource.bytes);
+  add_shared_memory(memory);
   result.cost.technique_memory = memory.entries;
   std::sort(notes_.begin(), notes_.end());
   notes_.erase(std::unique(notes_.begin(), notes_.end()), notes_.end());
   result.notes = notes_;
-  if (faults > 0)
-    result.notes.push_back(std::to_string(faults) + " pixels are not finite (magenta)");
+  if (result.non_finite_pixels > 0)
+    result.notes.push_back(std::to_string(result.non_finite_pixels) +
+                           " pixels are not finite (magenta)");
+}
+
+/// What lights require together is there once, however many they are.
+void FrameRun::add_shared_memory(vulkan::MemoryLedger& memory) const {
+  bool stencil = false;
+  bool adjacency = false;
+  for (const auto& light : lights_) {
+    stencil = stencil || light->needs().stencil;
+    adjacency = adjacency || light->needs().adjacency;
+  }
+  if (adjacency) memory.add("adjacency", setup_.scene.adjacency(state_.device).indices.size());
+  if (!stencil) return;
+  // A format with stencil may hold padding too: all that it takes over depth alone is the price.
+  const std::uint64_t depth_bytes = std::uint64_t{setup_.width} * setup_.height * sizeof(float);
+  for (const ResourceCost& target : targets_ledger_.entries)
+    if (target.name == "geometry depth and stencil" && target.bytes > depth_bytes)
+      memory.add("stencil", target.bytes - depth_bytes);
 }
 
 }  // namespace

@@ -193,4 +193,18 @@ const vulkan::Image& GpuScene::texture_of(std::uint32_t material) const {
   return texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : textures_.back();
 }
 
+const SceneAdjacency& GpuScene::adjacency(vulkan::Device& device) const {
+  if (!adjacency_) {
+    auto made = std::make_unique<SceneAdjacency>();
+    made->host = build_adjacency(position_list_, index_list_, ranges_);
+    vulkan::MemoryLedger ledger;
+    made->indices =
+        upload(device, ledger, "adjacency", made->host.indices.data(),
+               made->host.indices.size() * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    made->host.indices = {};
+    adjacency_ = std::move(made);
+  }
+  return *adjacency_;
+}
+
 }  // namespace penumbra

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <typeindex>
 #include <vector>
 
+#include "renderer/scene/adjacency.h"
 #include "renderer/scene/scene.h"
 #include "renderer/vulkan/commands.h"
 
@@ -49,6 +52,19 @@ class GpuScene {
   /// White where the material has no texture.
   const vulkan::Image& texture_of(std::uint32_t material) const;
 
+  /// Built and uploaded when first asked for, then kept with the scene. Charged to nobody here: who
+  /// requires it pays.
+  const SceneAdjacency& adjacency(vulkan::Device& device) const;
+
+  /// Something else derived from the scene alone, by its type: made by `make`, which answers a
+  /// shared_ptr<const T>, when first asked for, and kept with the scene.
+  template <class T, class Make>
+  const T& derived(const Make& make) const {
+    std::shared_ptr<const void>& slot = derived_[typeid(T)];
+    if (!slot) slot = std::shared_ptr<const T>(make());
+    return *static_cast<const T*>(slot.get());
+  }
+
  private:
   void flatten();
   void upload_materials(vulkan::Device& device);
@@ -64,6 +80,8 @@ class GpuScene {
   vulkan::MemoryLedger ledger_;
   vulkan::Buffer positions_, surfaces_, indices_, materials_;
   std::vector<vulkan::Image> textures_;  ///< one per scene texture, then white
+  mutable std::map<std::type_index, std::shared_ptr<const void>> derived_;
+  mutable std::unique_ptr<SceneAdjacency> adjacency_;
 };
 
 /// Device buffer with this content, by way of a staging buffer.
