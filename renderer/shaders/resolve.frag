@@ -1,8 +1,8 @@
 // Averages the samples of a pixel in linear light and encodes once.
+#include "renderer/shaders/faults.glsl"
 #include "renderer/shaders/frame.glsl"
 
 uniform sampler2D radiance;
-layout(std430) buffer FaultBlock { uint non_finite_pixels; };
 
 layout(location = 0) out vec4 out_encoded;
 #ifdef WITH_LINEAR

@@ -73,6 +73,17 @@ struct MapData {
   vec4 filter_size;  // x kernel radius in texels
 };
 
+/// Light points of one batch and sample of a pixel, and the boxes that hold them: positions, or
+/// directions that need not be unit.
+struct ShaftData {
+  vec4 points[points_per_batch];
+  vec4 box_low;     // box of the batch; w 1 for positions, 0 for directions
+  vec4 box_high;    // w distance that receivers are moved along their normal, m
+  vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre, m
+  vec4 whole_high;
+  uvec4 unused;     // x bits of points that the batch does not have
+};
+
 #ifdef __cplusplus
 }  // namespace penumbra::shader
 #endif

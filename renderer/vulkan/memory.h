@@ -112,6 +112,9 @@ class ConstantArena {
     return push(values.data(), values.size_bytes());
   }
   void reset() { used_ = 0; }
+  /// Frees everything pushed since `mark` was taken, once the device has read it.
+  VkDeviceSize mark() const { return used_; }
+  void rewind(VkDeviceSize mark) { used_ = mark; }
 
  private:
   Buffer buffer_;
