@@ -1,0 +1,1 @@
+#include "renderer/reference/occlusion_mask.glsl"

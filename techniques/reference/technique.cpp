@@ -1,0 +1,58 @@
+#include "renderer/reference/occlusion_mask.h"
+
+namespace penumbra::techniques {
+namespace {
+
+/// The mean over points of the light's extent of exact hard shadows: the truth of every other
+/// technique.
+class Reference : public Technique {
+ public:
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    const bool extended = input.light.extent.kind != ExtentKind::none;
+    needs.acceleration_structure = true;
+    needs.light_points = extended ? input.light_samples : 1;
+    needs.shade_each_point = choice_of(input.parameters, "mode") == "shaded";
+    needs.random_points = choice_of(input.parameters, "sampling") == "random";
+  }
+  void prepare(PrepareContext& context) override { mask_.trace(context); }
+  void bind(vulkan::Bindings& bindings) const override { mask_.bind(bindings); }
+
+ private:
+  reference::OcclusionMask mask_;
+};
+
+Parameter choice(const char* name, std::vector<std::string> choices, const char* meaning) {
+  Parameter parameter;
+  parameter.name = name;
+  parameter.type = ParameterType::choice;
+  parameter.default_value = choices.front();
+  parameter.choices = std::move(choices);
+  parameter.meaning = meaning;
+  parameter.variant = true;
+  return parameter;
+}
+
+}  // namespace
+
+TechniqueDescription describe_reference();
+TechniqueDescription describe_reference() {
+  TechniqueDescription description;
+  description.id = "reference";
+  description.label = "REF";
+  description.title = "Converged area light";
+  description.family = "truth";
+  description.source = "van Sambeek 2007, 4.1.2";
+  description.parameters = {
+      choice(
+          "mode", {"shaded", "visibility"},
+          "shaded: light comes from each point of the extent in turn. visibility: all light "
+          "comes from the centre, as techniques have it, times the visible share of the extent."),
+      choice("sampling", {"low-discrepancy", "random"},
+             "How the points lie on the extent. low-discrepancy: Sobol' points with Owen's "
+             "scrambling. random: independent.")};
+  description.shader = "techniques/reference/shadow.glsl";
+  description.create = [] { return std::make_unique<Reference>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques
