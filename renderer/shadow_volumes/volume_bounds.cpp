@@ -1,0 +1,79 @@
+#include "renderer/shadow_volumes/volume_bounds.h"
+
+#include <cmath>
+
+namespace penumbra::shadow_volumes {
+namespace {
+
+glm::dvec3 corner_of(const glm::dvec3& low, const glm::dvec3& high, int corner) {
+  return {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+          (corner & 4) != 0 ? high.z : low.z};
+}
+
+/// Whether a sphere lies wholly outside the cone of a spot light.
+bool outside_cone(const WorldLight& light, const glm::dvec3& center, double radius) {
+  const glm::dvec3 offset = center - light.position;
+  const double distance = glm::length(offset);
+  if (distance <= radius) return false;
+  const double angle =
+      std::acos(glm::clamp(glm::dot(offset, light.direction) / distance, -1.0, 1.0));
+  return angle - std::asin(radius / distance) > glm::radians(light.source->outer_angle) + 1e-6;
+}
+
+}  // namespace
+
+VolumeBounds::VolumeBounds(const PrepareContext& context) : light_(context.light) {
+  const bool directional = light_.kind == LightKind::directional;
+  const glm::dvec4 light(directional ? -light_.direction : light_.position,
+                         directional ? 0.0 : 1.0);
+  // Rows of the clip matrix: x >= -w, x <= w, y >= -w, y <= w, and the near plane z <= w.
+  const glm::dmat4 rows = glm::transpose(context.camera.clip_from_world);
+  for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+                                  rows[3] - rows[1], rows[3] - rows[2]})
+    if (glm::dot(plane, light) >= 0.0) planes_.push_back(plane);
+  const glm::mat4 clip(context.camera.clip_from_world);
+  for (const DrawRange& range : context.scene.ranges())
+    if (may_touch(clip, range.low, range.high)) {
+      receivers_.add(glm::dvec3(range.low));
+      receivers_.add(glm::dvec3(range.high));
+    }
+}
+
+bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const {
+  if (receivers_.empty()) return false;
+  for (const glm::dvec4& plane : planes_) {
+    bool outside = true;
+    for (int corner = 0; corner < 8 && outside; ++corner)
+      outside = glm::dot(plane, glm::dvec4(corner_of(low, high, corner), 1.0)) < 0.0;
+    if (outside) return false;
+  }
+  if (light_.kind == LightKind::directional) return true;
+  const glm::dvec3 center = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+  const double radius = 0.5 * glm::length(glm::dvec3(high) - glm::dvec3(low));
+  if (light_.kind == LightKind::spot && outside_cone(light_, center, radius)) return false;
+  const double range = light_.source->range;
+  return range <= 0.0 || glm::length(center - light_.position) - radius <= range;
+}
+
+std::optional<glm::vec4> VolumeBounds::end_plane(const glm::vec3& low,
+                                                 const glm::vec3& high) const {
+  const bool directional = light_.kind == LightKind::directional;
+  const glm::dvec3 from = directional ? glm::dvec3(0.0) : light_.position;
+  const glm::dvec3 offset = 0.5 * (glm::dvec3(low) + glm::dvec3(high)) - from;
+  if (!directional && glm::length(offset) <= 0.0) return std::nullopt;
+  const glm::dvec3 axis = directional ? light_.direction : glm::normalize(offset);
+  double end = -std::numeric_limits<double>::infinity();
+  double nearest = -end;
+  for (int corner = 0; corner < 8; ++corner) {
+    end = std::max(end, glm::dot(corner_of(receivers_.low, receivers_.high, corner) - from, axis));
+    const glm::dvec3 own = corner_of(low, high, corner) - from;
+    end = std::max(end, glm::dot(own, axis));
+    nearest = std::min(nearest, glm::dot(own, axis));
+  }
+  // A caster that nearly surrounds the light would send its corners far out sideways.
+  if (!directional && nearest < 1e-3 * end) return std::nullopt;
+  const double margin = 1e-3 * glm::length(receivers_.size()) + 1e-5 * std::abs(end);
+  return glm::vec4(axis, end + margin);
+}
+
+}  // namespace penumbra::shadow_volumes
