@@ -1,0 +1,38 @@
+// Keeps the part of a thrown triangle that falls on its receiver: samples of the frame whose surface
+// lies in the plane, inside the polygon, under a caster between plane and light.
+#include "renderer/shaders/caster.glsl"
+#include "renderer/shaders/geometry_buffer.glsl"
+#include "techniques/projected/receiver.glsl"
+
+uniform sampler2D geometry_position;
+uniform usampler2D geometry_words;
+
+layout(location = 0) in float height;
+#ifdef MASKED
+layout(location = 1) in vec2 surface_uv;
+layout(location = 2) in float vertex_alpha;
+layout(push_constant) uniform DrawBlock { uint material; } draw;
+#endif
+
+layout(location = 0) out float out_covered;
+
+void main() {
+#ifdef MASKED
+  MaterialData material = materials[draw.material];
+  float alpha = material.base_color.a * vertex_alpha;
+  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
+  if (alpha < material.surface.z) discard;
+#endif
+  // Casters beyond the light would throw mirrored shadows, those below the plane inverted ones, and
+  // those in the plane are the receiver itself.
+  if (height <= receiver.heights.x || height >= receiver.heights.y) discard;
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  vec4 surface = texelFetch(geometry_position, texel, 0);
+  if (surface.w == 0.0) discard;
+  if (abs(dot(receiver.plane.xyz, surface.xyz) - receiver.plane.w) > receiver.heights.z) discard;
+  vec3 normal = unpack_unit_vector(texelFetch(geometry_words, texel, 0).y);
+  if (dot(normal, receiver.plane.xyz) < 0.99) discard;
+  for (int i = 0; i < int(receiver.heights.w); ++i)
+    if (dot(sides[i].xyz, surface.xyz) < sides[i].w) discard;
+  out_covered = 1.0;
+}
