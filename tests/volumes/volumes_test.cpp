@@ -1,0 +1,235 @@
+// Shadow volumes against closed forms and against rays.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/error.h"
+#include "tests/volumes/drawing.h"
+
+namespace penumbra {
+namespace {
+
+using test::draw;
+using test::ground_point;
+using test::meets_box;
+using test::size;
+
+const glm::dvec3 box_low(-0.4, 0.5, -0.3);
+const glm::dvec3 box_high(0.5, 0.9, 0.4);
+
+/// A box that floats over the ground, under a light of this kind.
+Scene floating_box(LightKind kind, Projection projection) {
+  scenes::SceneBuilder b("floating-box", "A box over the ground");
+  const scenes::Look look = b.look("grey", glm::vec3(0.7f));
+  b.ground({-3.0, -3.0}, {3.0, 3.0}, look);
+  b.place(scenes::box(box_low, box_high), look, "box");
+  Light& light =
+      b.spot("lamp", {1.1, 3.0, 0.7}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 60.0, LightExtent{});
+  light.kind = kind;
+  b.camera("main", {2.0, 2.6, 3.4}, {-0.2, 0.2, -0.1}, 50.0);
+  b.scene.cameras[0].projection = projection;
+  b.scene.cameras[0].orthographic_height = 4.0;
+  return b.scene;
+}
+
+/// 0 where the ground at `point` is shadowed by the box, 1 where it is lit, -1 so near the border
+/// that rounding decides.
+int truth_at(const Light& light, const glm::dvec3& point) {
+  const glm::dvec3 to =
+      light.kind == LightKind::directional ? point - 100.0 * light.direction : light.position;
+  const glm::dvec3 margin(1e-4);
+  const bool grown = meets_box(point, to, box_low - margin, box_high + margin);
+  const bool shrunk = meets_box(point, to, box_low + margin, box_high - margin);
+  return grown != shrunk ? -1 : grown ? 0 : 1;
+}
+
+struct Judged {
+  int shadowed = 0, lit = 0, wrong = 0;
+};
+
+/// Compares every pixel that shows the ground with the truth.
+Judged judge(const Scene& scene, const RenderResult& result) {
+  Judged judged;
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const Camera& camera = scene.cameras[0];
+      const glm::dvec3 point = ground_point(camera, x, y);
+      const bool parallel = camera.projection == Projection::orthographic;
+      const glm::dvec3 eye = parallel
+                                 ? point - 20.0 * glm::normalize(camera.target - camera.position)
+                                 : camera.position;
+      const glm::dvec3 margin(0.01);
+      if (result.judged.at(x, y, 0) < 1.0f ||
+          meets_box(point, eye, box_low - margin, box_high + margin))
+        continue;
+      const int truth = truth_at(scene.lights[0], point);
+      if (truth < 0) continue;
+      ++(truth == 0 ? judged.shadowed : judged.lit);
+      judged.wrong += result.visibility.at(x, y, 0) != static_cast<float>(truth);
+    }
+  return judged;
+}
+
+class Kinds : public testing::TestWithParam<std::tuple<LightKind, Projection, const char*>> {};
+
+TEST_P(Kinds, shadow_the_ground_exactly_where_a_box_hides_the_light) {
+  const auto [kind, projection, technique] = GetParam();
+  const Scene scene = floating_box(kind, projection);
+  for (const bool clamp : {false, true}) {
+    const Judged judged = judge(scene, draw(scene, technique, {{"clamp", clamp}}));
+    EXPECT_GT(judged.shadowed, 400);
+    EXPECT_GT(judged.lit, 4000);
+    EXPECT_EQ(judged.wrong, 0) << "clamp " << clamp;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, Kinds,
+    testing::Combine(testing::Values(LightKind::spot, LightKind::point, LightKind::directional),
+                     testing::Values(Projection::perspective, Projection::orthographic),
+                     testing::Values("shadow-volumes", "shadow-volumes-zpass",
+                                     "shadow-volumes-brute-force")));
+
+class BuiltInScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(BuiltInScenes, agree_with_one_exact_ray_per_pixel) {
+  const Scene scene = *scenes::load(GetParam());
+  const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
+  const RenderResult volumes = draw(scene, "shadow-volumes");
+  int judged = 0;
+  int different = 0;
+  for (std::size_t i = 0; i < rays.judged.pixels.size(); ++i) {
+    if (rays.judged.pixels[i] < 1.0f) continue;
+    ++judged;
+    different += rays.visibility.pixels[i] != volumes.visibility.pixels[i];
+  }
+  EXPECT_GT(judged, 5000);
+  EXPECT_LE(different, judged * 0.0005) << judged << " judged";
+}
+
+TEST_P(BuiltInScenes, look_the_same_with_and_without_clamping) {
+  const Scene scene = *scenes::load(GetParam());
+  const RenderResult whole = draw(scene, "shadow-volumes");
+  const RenderResult clamped = draw(scene, "shadow-volumes", {{"clamp", true}});
+  const auto error = metrics::visibility_error(clamped.visibility, whole.visibility, whole.judged);
+  EXPECT_LE(error.false_shadow + error.missing_shadow, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, BuiltInScenes,
+                         testing::Values("boxes", "disco-box", "car", "camera-in-volume",
+                                         "leaky-box", "contact"));
+
+TEST(ShadowVolumes, clamping_draws_fewer_fragments) {
+  const Scene scene = *scenes::load("camera-in-volume");
+  const auto fragments = [&](bool clamp) {
+    for (const PassCost& pass : draw(scene, "shadow-volumes", {{"clamp", clamp}}).cost.passes)
+      if (pass.name == "volumes") return pass.fragment_invocations;
+    return std::uint64_t{0};
+  };
+  EXPECT_LT(fragments(true), fragments(false));
+}
+
+/// Share of the judged pixels on which two pictures agree.
+double agreement(const RenderResult& a, const RenderResult& b) {
+  double judged = 0.0;
+  double alike = 0.0;
+  for (std::size_t i = 0; i < a.judged.pixels.size(); ++i) {
+    if (a.judged.pixels[i] < 1.0f) continue;
+    ++judged;
+    alike += a.visibility.pixels[i] == b.visibility.pixels[i];
+  }
+  return alike / judged;
+}
+
+TEST(ShadowVolumes, z_pass_inverts_where_the_camera_is_in_a_volume_and_z_fail_does_not) {
+  const Scene scene = *scenes::load("camera-in-volume");
+  const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
+  EXPECT_GT(agreement(draw(scene, "shadow-volumes"), rays), 0.999);
+  EXPECT_LT(agreement(draw(scene, "shadow-volumes-zpass"), rays), 0.5);
+  const RenderResult rays_aside = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}}, "side");
+  EXPECT_GT(agreement(draw(scene, "shadow-volumes-zpass", {}, "side"), rays_aside), 0.999);
+}
+
+TEST(ShadowVolumes, count_nothing_on_ground_that_no_shadow_meets) {
+  Scene scene = floating_box(LightKind::spot, Projection::perspective);
+  const auto resolved = techniques::resolve("shadow-volumes");
+  RenderRequest request;
+  request.scene = std::make_shared<const Scene>(scene);
+  request.technique = resolved.technique;
+  request.width = request.height = size;
+  request.diagnostic = "count";
+  const Image8 counts = test::renderer().render(request).diagnostic;
+  int grey = 0;
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const glm::dvec3 point = ground_point(scene.cameras[0], x, y);
+      if (std::max(std::abs(point.x), std::abs(point.z)) > 2.9 ||
+          meets_box(point, scene.cameras[0].position, box_low - 0.01, box_high + 0.01) ||
+          truth_at(scene.lights[0], point) != 1)
+        continue;
+      ++grey;
+      EXPECT_EQ(counts.at(x, y, 0), counts.at(x, y, 2)) << x << ' ' << y;
+    }
+  EXPECT_GT(grey, 4000);
+}
+
+/// One quadrangle over the ground, wound upwards or downwards.
+Scene sheet(bool upwards, bool double_sided) {
+  Scene scene = floating_box(LightKind::point, Projection::perspective);
+  Mesh& mesh = scene.meshes[scene.instances[1].mesh];
+  const double y = box_high.y;
+  mesh.positions = {{box_low.x, y, box_low.z},
+                    {box_low.x, y, box_high.z},
+                    {box_high.x, y, box_high.z},
+                    {box_high.x, y, box_low.z}};
+  mesh.normals.assign(4, glm::vec3(0.0f, upwards ? 1.0f : -1.0f, 0.0f));
+  mesh.uvs.clear();
+  mesh.colors.clear();
+  mesh.indices = upwards ? std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}
+                         : std::vector<std::uint32_t>{0, 2, 1, 0, 3, 2};
+  mesh.primitives = {{0, 6, mesh.primitives[0].material}};
+  for (Material& material : scene.materials) material.double_sided = double_sided;
+  return scene;
+}
+
+TEST(ShadowVolumes, of_an_open_sheet_are_the_same_whichever_way_it_looks) {
+  for (const bool upwards : {true, false})
+    for (const bool double_sided : {true, false}) {
+      const Scene scene = sheet(upwards, double_sided);
+      const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
+      const RenderResult volumes = draw(scene, "shadow-volumes");
+      EXPECT_GT(agreement(volumes, rays), 0.9995)
+          << (upwards ? "up" : "down") << (double_sided ? ", double-sided" : "");
+    }
+}
+
+TEST(ShadowVolumes, pay_for_adjacency_with_twice_the_bytes_of_the_indices_whatever_the_lights) {
+  const Scene scene = *scenes::load("disco-box");  // three lights
+  std::uint64_t index_bytes = 0;
+  for (const Instance& instance : scene.instances)
+    index_bytes += scene.meshes[instance.mesh].indices.size() * 4;
+  std::uint64_t adjacency = 0;
+  for (const ResourceCost& resource : draw(scene, "shadow-volumes").cost.technique_memory)
+    if (resource.name == "adjacency") adjacency = resource.bytes;
+  EXPECT_EQ(adjacency, 2 * index_bytes);
+}
+
+TEST(ShadowVolumes, say_that_they_ignore_masks) {
+  Scene scene = floating_box(LightKind::spot, Projection::perspective);
+  EXPECT_THAT(draw(scene, "shadow-volumes").notes, testing::IsEmpty());
+  for (Material& material : scene.materials) material.alpha_mode = AlphaMode::mask;
+  EXPECT_THAT(draw(scene, "shadow-volumes").notes,
+              testing::Contains(testing::HasSubstr("ignore alpha masks")));
+}
+
+TEST(ShadowVolumes, by_brute_force_draw_more_primitives_than_silhouettes_do) {
+  const Scene scene = *scenes::load("contact");
+  const auto primitives = [&](const char* technique) {
+    for (const PassCost& pass : draw(scene, technique).cost.passes)
+      if (pass.name == "volumes") return pass.geometry_primitives;
+    return std::uint64_t{0};
+  };
+  EXPECT_GT(primitives("shadow-volumes-brute-force"), 2 * primitives("shadow-volumes-zpass"));
+}
+
+}  // namespace
+}  // namespace penumbra
