@@ -14,7 +14,8 @@ using Matrix = std::vector<std::vector<double>>;
 
 constexpr std::size_t most_sets = 50'000;  ///< sets to choose from, over all different rests
 constexpr int most_steps = 100;
-constexpr double most_log = 40.0;  ///< a log worth beyond this runs off to infinity
+constexpr double most_log = 40.0;      ///< a log worth beyond this runs off to infinity,
+constexpr double most_variance = 1e6;  ///< and so does one that is as little known as this
 
 /// One choice: `chosen` took the next place from `left`.
 struct Stage {
@@ -201,14 +202,18 @@ bool maximise(const Model& model, Eigen::VectorXd& parameters) {
     if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
     Eigen::VectorXd step = solver.solve(value.gradient);
     if (!step.allFinite()) return false;
-    // Newton's decrement estimates what is left to gain.
-    if (value.gradient.dot(step) < 1e-18 * (1.0 + std::abs(value.log_likelihood))) return true;
+    // Newton's decrement estimates what is left to gain. Below what rounding lets the likelihood
+    // show, one last full step squares the error away.
+    if (value.gradient.dot(step) < 1e-10 * (1.0 + std::abs(value.log_likelihood))) {
+      parameters += step;
+      return true;
+    }
     Model::Value next = model.evaluate(parameters + step);
     for (int half = 0; half < 40 && next.log_likelihood < value.log_likelihood; ++half) {
       step *= 0.5;
       next = model.evaluate(parameters + step);
     }
-    if (next.log_likelihood < value.log_likelihood) return true;  // rounding: nothing to gain
+    if (next.log_likelihood < value.log_likelihood) return false;
     parameters += step;
     value = std::move(next);
     if (parameters.cwiseAbs().maxCoeff() > most_log) return false;
@@ -245,6 +250,9 @@ PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t
   if (!maximise(model, parameters)) return without_fit("no finite maximum of the likelihood");
   const Model::Value value = model.evaluate(parameters);
   const Eigen::MatrixXd inverse = value.information.inverse();
+  if (!(inverse.diagonal().maxCoeff() < most_variance)) {
+    return without_fit("no finite maximum of the likelihood");
+  }
   const Eigen::MatrixXd sandwich = inverse * model.clustered_scores(parameters) * inverse;
 
   // Centred log worths are a linear map of the parameters: append the reference, take off the mean.

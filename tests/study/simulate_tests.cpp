@@ -25,7 +25,7 @@ Study nine_pictures() {
 TEST(Simulation, TheKnownOrderComesOutAgain) {
   const Study study = nine_pictures();
   const Preferences preferences = default_preferences(study, 0.8);
-  const auto rows = simulate_responses(study, simulate_people(200, 0, 0, 1), preferences, 1);
+  const auto rows = simulate_responses(study, simulate_people(100, 0, 0, 1), preferences, 1);
   const json report = statistics_report(rows, report_options(study));
   const json& techniques = report["included_sets"]["all"]["overall"]["techniques"];
   // The study's last picture has the highest worth.
