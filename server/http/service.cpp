@@ -29,7 +29,9 @@ std::string Service::not_ready() const {
 }
 
 nlohmann::json Service::gauges() {
-  nlohmann::json numbers = {{"renders", renders->statistics()}, {"ready", not_ready().empty()}};
+  nlohmann::json numbers = {{"renders", renders->statistics()},
+                            {"ready", not_ready().empty()},
+                            {"participants", nlohmann::json::object()}};
   if (!database.healthy()) return numbers;
   for (const auto& record : studies.list()) {
     const auto counts = studies.counts(record.id, record.version);
