@@ -30,18 +30,29 @@ json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-std::uint32_t frames_to_time(const CanonicalRequest& request, const Cost& first,
+/// Frames that fit the budget at so many milliseconds each, the uncounted first one included.
+std::uint32_t affordable_frames(double frame_ms) {
+  const double count = frame_ms > 0.0 ? timing_budget_ms / frame_ms - 1.0 : default_frames;
+  return static_cast<std::uint32_t>(
+      std::clamp(count, double{fewest_frames}, double{default_frames}));
+}
+
+double frame_ms_of(const Cost& cost) {
+  return std::max(cost.wall_median_ms, cost.median_ms);
+}
+
+std::uint32_t frames_to_time(Renderer& renderer, const Task& task, const Cost& first,
                              std::vector<std::string>& notes) {
-  if (request.frames > 0) return request.frames;
-  const double frame_ms = std::max(first.wall_median_ms, first.median_ms);
-  // One uncounted frame goes before the counted ones.
-  const double affordable = frame_ms > 0.0 ? timing_budget_ms / frame_ms - 1.0 : default_frames;
-  const auto frames = static_cast<std::uint32_t>(
-      std::clamp(affordable, double{fewest_frames}, double{default_frames}));
+  if (task.request.frames > 0) return task.request.frames;
+  double frame_ms = frame_ms_of(first);
+  // The very first frame may have spent its time compiling; only a second one tells.
+  if (affordable_frames(frame_ms) < default_frames)
+    frame_ms = frame_ms_of(renderer.render(to_render_request(task.request)).cost);
+  const std::uint32_t frames = affordable_frames(frame_ms);
   if (frames < default_frames)
     notes.push_back("timed over " + std::to_string(frames) + " frames instead of " +
                     std::to_string(default_frames) + ", since one takes " +
-                    std::to_string(static_cast<long>(frame_ms)) + " ms");
+                    std::to_string(std::lround(frame_ms)) + " ms");
   return frames;
 }
 
@@ -75,7 +86,7 @@ json cost_to_json(const Cost& cost) {
 json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first,
                   const std::function<void(double)>& progress, std::vector<std::string>& notes) {
   RenderRequest request = to_render_request(task.request);
-  request.frames = frames_to_time(task.request, first.cost, notes);
+  request.frames = frames_to_time(renderer, task, first.cost, notes);
   const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
   if (!alone.held()) notes.push_back("measured while another render shared the device");
   return cost_to_json(renderer.render(request, progress).cost);

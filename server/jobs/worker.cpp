@@ -53,7 +53,7 @@ Task task_from(Message& message, const WorkerOptions& options) {
   const std::string renderer = request.at("renderer");
   const std::string scene_hash = request.at("scene_hash");
   for (const char* derived : {"renderer", "scene_hash", "device"}) request.erase(derived);
-  request["frames"] = body.at("frames");
+  if (body.at("frames") != 0) request["frames"] = body.at("frames");
 
   Task task;
   task.request = read_request(request, {options.data, options.device, false});
