@@ -180,6 +180,8 @@ Recorder::Recorder(Device& device, PipelineCache& cache)
       statistics_(make_queries(device, VK_QUERY_TYPE_PIPELINE_STATISTICS, max_passes)) {}
 
 void Recorder::begin(bool count_statistics) {
+  // A render that was cancelled or failed may have left its recording behind.
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");
   count_statistics_ = count_statistics;
   names_.clear();
   begin_commands(commands_);
