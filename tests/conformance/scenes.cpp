@@ -59,8 +59,12 @@ Scene covered_ground() {
   Scene scene = open_ground();
   scene.id = "covered-ground";
   add_box(scene, {-2, 1, -2}, {2, 1.1, 2});
-  scene.cameras[0].position = {0, 0.8, 0};
-  scene.cameras[0].near_plane = 0.05;
+  // From the side, outside the shadow: z-pass volumes invert where the camera is in it.
+  scene.cameras[0].position = {0, 0.7, 5};
+  scene.cameras[0].target = {0, 0.2, 0};
+  scene.cameras[0].up = {0, 1, 0};
+  scene.cameras[0].projection = Projection::perspective;
+  scene.cameras[0].vertical_fov = 25.0;
   return scene;
 }
 
