@@ -82,7 +82,8 @@ Texture read_texture(const json& value, const std::string& path, const fs::path&
 template <class T>
 std::size_t find(const json& value, const std::string& path, const std::vector<T>& list) {
   std::string names;
-  if (value.is_number_unsigned() && value.get<std::uint64_t>() < list.size())
+  if (value.is_number_integer() && value.get<std::int64_t>() >= 0 &&
+      value.get<std::uint64_t>() < list.size())
     return value.get<std::size_t>();
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (value.is_string() && list[i].name == value.get_ref<const std::string&>()) return i;
@@ -139,7 +140,7 @@ void add_model(const json& value, const std::string& path, const fs::path& folde
   const bool obj = file.extension() == ".obj";
   if (!obj && file.extension() != ".gltf" && file.extension() != ".glb")
     reader.fail("file", "must end in .gltf, .glb or .obj");
-  Scene model = obj ? import_obj(file) : import_gltf(file);
+  Scene model = obj ? import_obj(file, false) : import_gltf(file, false);
   const auto textures = static_cast<int>(scene.textures.size());
   const auto materials = static_cast<std::uint32_t>(scene.materials.size());
   const auto meshes = static_cast<std::uint32_t>(scene.meshes.size());
@@ -153,8 +154,6 @@ void add_model(const json& value, const std::string& path, const fs::path& folde
     scene.meshes.push_back(std::move(mesh));
   }
   for (Instance instance : model.instances) {
-    if (instance.name == "ground" && !model.receivers.empty())
-      continue;  // the import's own addition
     instance.mesh += meshes;
     instance.world_from_object = transform * instance.world_from_object;
     instance.casts_shadow = instance.casts_shadow && casts_shadow;
@@ -177,13 +176,22 @@ void check_named(const std::vector<T>& list, const std::string& key) {
 }  // namespace
 
 json parse_json(const std::string& text, const std::string& name) {
-  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > static_cast<int>(max_depth))
+  // Counted beforehand: the parser's own callback makes it slow for long lists.
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\')
+      ++i;
+    else if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && (c == '[' || c == '{') && ++depth > max_depth)
       throw unreadable(name + " is nested deeper than " + std::to_string(max_depth) + " levels");
-    return true;
-  };
+    else if (!quoted && (c == ']' || c == '}') && depth > 0)
+      --depth;
+  }
   try {
-    return json::parse(text, limit_depth);
+    return json::parse(text);
   } catch (const json::exception& error) {
     throw unreadable(name + " is no JSON: " + error.what());
   }

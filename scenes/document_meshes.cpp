@@ -160,7 +160,8 @@ json array_of(const std::vector<glm::vec<N, float>>& list) {
 }
 
 std::uint32_t whole(const json& value, const std::string& path) {
-  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 0xffffffffu)
+  if (!value.is_number_integer() || value.get<std::int64_t>() < 0 ||
+      value.get<std::int64_t>() > 0xffffffffll)
     throw unreadable(path + " must be a whole number of 0 or above", path);
   return value.get<std::uint32_t>();
 }

@@ -12,14 +12,16 @@ namespace {
 
 /// Distance from the island's middle in radii of its shore, which noise makes irregular.
 double shore(double x, double z) {
-  const double bend = fractal_noise(0.5 + x / 60.0, 0.5 + z / 60.0, 6, 6, 3, 71) - 0.5;
+  static const FractalNoise noise(6, 6, 3, 71);
+  const double bend = noise(0.5 + x / 60.0, 0.5 + z / 60.0) - 0.5;
   return std::sqrt(x * x / (13.5 * 13.5) + z * z / (10.0 * 10.0)) + 0.75 * bend;
 }
 
 /// Height of the sand above the sea, metres.
 double sand_height(double x, double z) {
+  static const FractalNoise noise(12, 12, 3, 72);
   const double inside = 1.0 - shore(x, z);
-  const double dunes = 0.25 * (fractal_noise(0.5 + x / 40.0, 0.5 + z / 40.0, 12, 12, 3, 72) - 0.5);
+  const double dunes = 0.25 * (noise(0.5 + x / 40.0, 0.5 + z / 40.0) - 0.5);
   return (inside > 0.0 ? 2.1 * inside * (2.0 - inside) : 3.0 * inside) + dunes;
 }
 
@@ -27,7 +29,8 @@ double sand_height(double x, double z) {
 double grass_height(double x, double z) {
   const double dx = (x + 3.2) / 7.0, dz = (z + 1.2) / 5.2;
   const double hill = 1.0 - dx * dx - dz * dz;
-  const double bumps = fractal_noise(0.5 + x / 40.0, 0.5 + z / 40.0, 10, 10, 4, 73) - 0.5;
+  static const FractalNoise noise(10, 10, 4, 73);
+  const double bumps = noise(0.5 + x / 40.0, 0.5 + z / 40.0) - 0.5;
   return sand_height(x, z) + std::max(-0.6, 0.95 * hill + 0.9 * bumps - 0.08);
 }
 

@@ -58,10 +58,11 @@ Solid bar(const glm::dvec3& from, const glm::dvec3& to, double width, double hei
 
 Solid boulder(std::uint32_t seed, double roughness, int slices, int stacks) {
   Solid solid = sphere(1.0, slices, stacks);
+  const FractalNoise across(4, 4, 3, seed), along(4, 4, 3, seed + 9);
   for (glm::dvec3& p : solid.points) {
     // Two sheets of noise, crossed: no pole, no seam.
-    const double bumps = fractal_noise(0.5 + 0.31 * p.x, 0.5 + 0.31 * p.y, 4, 4, 3, seed) +
-                         fractal_noise(0.5 + 0.31 * p.z, 0.5 + 0.31 * p.y, 4, 4, 3, seed + 9);
+    const double bumps =
+        across(0.5 + 0.31 * p.x, 0.5 + 0.31 * p.y) + along(0.5 + 0.31 * p.z, 0.5 + 0.31 * p.y);
     p *= 1.0 + roughness * (bumps - 1.0);
   }
   solid.uvs.clear();

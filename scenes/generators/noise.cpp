@@ -16,31 +16,52 @@ double lattice(std::int64_t x, std::int64_t y, std::uint32_t seed) {
   return static_cast<double>(h >> 11) * 0x1p-53;
 }
 
-double value_noise(double x, double y, int period_x, int period_y, std::uint32_t seed) {
-  const double floor_x = std::floor(x), floor_y = std::floor(y);
-  const double fx = x - floor_x, fy = y - floor_y;
-  const auto wrap = [](std::int64_t i, int period) { return ((i % period) + period) % period; };
-  const auto ix = static_cast<std::int64_t>(floor_x), iy = static_cast<std::int64_t>(floor_y);
-  const std::int64_t x0 = wrap(ix, period_x), x1 = wrap(ix + 1, period_x);
-  const std::int64_t y0 = wrap(iy, period_y), y1 = wrap(iy + 1, period_y);
-  // Perlin's quintic: no visible creases at lattice lines.
-  const double sx = fx * fx * fx * (fx * (fx * 6.0 - 15.0) + 10.0);
-  const double sy = fy * fy * fy * (fy * (fy * 6.0 - 15.0) + 10.0);
-  const double low = lattice(x0, y0, seed) * (1.0 - sx) + lattice(x1, y0, seed) * sx;
-  const double high = lattice(x0, y1, seed) * (1.0 - sx) + lattice(x1, y1, seed) * sx;
-  return low * (1.0 - sy) + high * sy;
+namespace {
+
+/// Perlin's quintic: no visible creases at lattice lines.
+double fade(double t) {
+  return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-double fractal_noise(double u, double v, int cells_x, int cells_y, int octaves,
-                     std::uint32_t seed) {
-  double sum = 0.0, weight = 1.0, total = 0.0;
+int wrapped(double floor, int period) {
+  const auto i = static_cast<std::int64_t>(floor) % period;
+  return static_cast<int>(i < 0 ? i + period : i);
+}
+
+}  // namespace
+
+FractalNoise::FractalNoise(int cells_x, int cells_y, int octaves, std::uint32_t seed) {
+  double weight = 1.0;
   for (int octave = 0; octave < octaves; ++octave) {
-    sum += weight * value_noise(u * cells_x, v * cells_y, cells_x, cells_y,
-                                seed + 101u * static_cast<std::uint32_t>(octave));
+    Octave lattice_of{cells_x, cells_y, weight, {}};
+    for (int y = 0; y < cells_y; ++y)
+      for (int x = 0; x < cells_x; ++x)
+        lattice_of.values.push_back(
+            lattice(x, y, seed + 101u * static_cast<std::uint32_t>(octave)));
+    lattices.push_back(std::move(lattice_of));
     total += weight;
     weight *= 0.5;
     cells_x *= 2;
     cells_y *= 2;
+  }
+}
+
+double FractalNoise::operator()(double u, double v) const {
+  double sum = 0.0;
+  for (const Octave& octave : lattices) {
+    const double x = u * octave.cells_x, y = v * octave.cells_y;
+    const double floor_x = std::floor(x), floor_y = std::floor(y);
+    const int x0 = wrapped(floor_x, octave.cells_x), y0 = wrapped(floor_y, octave.cells_y);
+    const int x1 = x0 + 1 == octave.cells_x ? 0 : x0 + 1,
+              y1 = y0 + 1 == octave.cells_y ? 0 : y0 + 1;
+    const double* row0 =
+        &octave.values[static_cast<std::size_t>(y0) * static_cast<std::size_t>(octave.cells_x)];
+    const double* row1 =
+        &octave.values[static_cast<std::size_t>(y1) * static_cast<std::size_t>(octave.cells_x)];
+    const double sx = fade(x - floor_x), sy = fade(y - floor_y);
+    const double low = row0[x0] * (1.0 - sx) + row0[x1] * sx;
+    const double high = row1[x0] * (1.0 - sx) + row1[x1] * sx;
+    sum += octave.weight * (low * (1.0 - sy) + high * sy);
   }
   return sum / total;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace penumbra::scenes {
 
@@ -10,12 +11,23 @@ namespace penumbra::scenes {
 /// Random value in [0, 1) of a lattice point.
 double lattice(std::int64_t x, std::int64_t y, std::uint32_t seed);
 
-/// Smooth value noise in [0, 1); repeats every `period_x`, `period_y` units.
-double value_noise(double x, double y, int period_x, int period_y, std::uint32_t seed);
+/// Sum of `octaves` of smooth value noise, each twice as fine and half as strong, in [0, 1);
+/// repeats every unit of u and v, which holds `cells_x` by `cells_y` lattice cells of the coarsest
+/// octave.
+class FractalNoise {
+ public:
+  FractalNoise(int cells_x, int cells_y, int octaves, std::uint32_t seed);
+  double operator()(double u, double v) const;
 
-/// Sum of `octaves` of value noise, each twice as fine and half as strong, in [0, 1). u and v in
-/// [0, 1) span one repeat, which holds `cells_x` by `cells_y` lattice cells of the coarsest octave.
-double fractal_noise(double u, double v, int cells_x, int cells_y, int octaves, std::uint32_t seed);
+ private:
+  struct Octave {
+    int cells_x, cells_y;
+    double weight;
+    std::vector<double> values;  ///< a row of cells_x per lattice line
+  };
+  std::vector<Octave> lattices;
+  double total = 0.0;
+};
 
 /// 0 below `low`, 1 above `high`, smooth in between.
 double smooth_step(double low, double high, double x);

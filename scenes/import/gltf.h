@@ -39,8 +39,10 @@ struct TextureUse {
   bool operator==(const TextureUse&) const = default;
 };
 
-/// Fills textures and materials (the last one is glTF's default); one TextureUse per material.
-std::vector<TextureUse> read_materials(const tinygltf::Model& model, Scene& scene);
+/// Fills textures, in their order if all are wanted, else as materials show them, and materials
+/// (the last one is glTF's default); one TextureUse per material.
+std::vector<TextureUse> read_materials(const tinygltf::Model& model, bool all_textures,
+                                       Scene& scene);
 
 /// Fills meshes, one per glTF mesh; those without triangles stay empty.
 void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& uses, Scene& scene);

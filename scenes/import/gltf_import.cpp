@@ -53,18 +53,19 @@ bool has_extras(const nlohmann::json& document) {
 
 }  // namespace gltf
 
-Scene import_gltf(const std::filesystem::path& file) {
+Scene import_gltf(const std::filesystem::path& file, bool complete) {
   nlohmann::json document;
   const tinygltf::Model model = gltf::parse(file, document);
+  const bool ours = gltf::has_extras(document);
   Scene scene;
   scene.id = scene.title = file.stem().string();
-  const std::vector<gltf::TextureUse> uses = gltf::read_materials(model, scene);
+  const std::vector<gltf::TextureUse> uses = gltf::read_materials(model, ours, scene);
   gltf::read_meshes(model, uses, scene);
   gltf::read_nodes(model, scene);
   if (scene.instances.empty()) throw unreadable("the file has no triangles to draw");
-  if (gltf::has_extras(document)) {
+  if (ours) {
     gltf::read_extras(document, scene);
-  } else {
+  } else if (complete) {
     gltf::expose(scene);
     complete_import(scene);
   }

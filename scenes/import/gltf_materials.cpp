@@ -172,8 +172,11 @@ Material read_material(const tinygltf::Material& from, Textures& textures, const
 
 }  // namespace
 
-std::vector<TextureUse> read_materials(const tinygltf::Model& model, Scene& scene) {
+std::vector<TextureUse> read_materials(const tinygltf::Model& model, bool all_textures,
+                                       Scene& scene) {
   Textures textures(model, scene);
+  for (std::size_t i = 0; all_textures && i < model.textures.size(); ++i)
+    textures.use(static_cast<int>(i), element("textures", i));
   std::vector<TextureUse> uses;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     TextureUse use;

@@ -67,7 +67,7 @@ std::vector<glm::vec4> read_colors(const tinygltf::Model& model, int accessor,
 
 /// Attributes of one primitive as a mesh without triangles.
 Mesh read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                   const TextureUse& use, bool textured, const std::string& where) {
+                   const TextureUse& use, const std::string& where) {
   Mesh mesh;
   const std::vector<float> positions =
       read_floats(model, attribute(primitive, "POSITION"), 3, where + ".POSITION");
@@ -85,7 +85,7 @@ Mesh read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& prim
       mesh.normals.emplace_back(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
   }
   const std::string set = "TEXCOORD_" + std::to_string(use.set);
-  if (const int accessor = attribute(primitive, set); accessor >= 0 && textured) {
+  if (const int accessor = attribute(primitive, set); accessor >= 0) {
     mesh.uvs = read_uvs(model, accessor, use, where + "." + set);
     check(mesh.uvs.size(), set.c_str());
   }
@@ -168,12 +168,11 @@ Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
     throw unreadable(where + ".material names no material", where);
   const auto material = primitive.material < 0 ? model.materials.size()
                                                : static_cast<std::size_t>(primitive.material);
-  const bool textured = scene.materials[material].texture >= 0;
   if (attribute(primitive, "POSITION") < 0) {
     scene.notes.push_back(where + " has no positions: it is left out");
     return {};
   }
-  Mesh mesh = read_vertices(model, primitive, uses[material], textured, where);
+  Mesh mesh = read_vertices(model, primitive, uses[material], where);
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0) {
     indices = read_indices(model, primitive.indices, where + ".indices");
@@ -195,17 +194,12 @@ Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
 
 /// Whether two primitives read the same vertices, which then are stored once.
 bool share_vertices(const tinygltf::Primitive& a, const tinygltf::Primitive& b,
-                    const std::vector<TextureUse>& uses, const Scene& scene) {
-  const auto material = [&](const tinygltf::Primitive& p) {
-    return p.material < 0 || p.material >= static_cast<int>(uses.size())
-               ? uses.size() - 1
-               : static_cast<std::size_t>(p.material);
+                    const std::vector<TextureUse>& uses) {
+  const auto use_of = [&](const tinygltf::Primitive& p) {
+    return p.material < 0 ? uses.back() : uses[static_cast<std::size_t>(p.material)];
   };
-  const bool textured_a = scene.materials[material(a)].texture >= 0;
-  const bool textured_b = scene.materials[material(b)].texture >= 0;
-  const bool uv = textured_a || textured_b;
   return a.attributes == b.attributes && attribute(a, "NORMAL") >= 0 && a.indices >= 0 &&
-         b.indices >= 0 && (!uv || (uses[material(a)] == uses[material(b)] && textured_a));
+         b.indices >= 0 && use_of(a) == use_of(b);
 }
 
 }  // namespace
@@ -229,7 +223,7 @@ void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& us
       if (piece.indices.empty()) continue;
       corners += piece.indices.size();
       if (corners > max_corners) throw unreadable("the file has too many triangles", where);
-      if (before != nullptr && share_vertices(*before, primitive, uses, scene)) {
+      if (before != nullptr && share_vertices(*before, primitive, uses)) {
         const auto first =
             static_cast<std::uint32_t>(mesh.positions.size() - piece.positions.size());
         const auto first_index = static_cast<std::uint32_t>(mesh.indices.size());

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t max_elements = 1u << 20;  ///< of any list of the document
+constexpr std::size_t max_elements = 200'000;  ///< of any list of the document
 
 std::uint32_t word(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;

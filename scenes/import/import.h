@@ -9,11 +9,12 @@ namespace penumbra::scenes {
 
 /// glTF 2.0, .gltf or .glb. Buffers and images are taken from the file itself or from its folder
 /// and below, from nowhere else. Throws unreadable naming the element at fault, unsupported for
-/// glTF 1.0.
-Scene import_gltf(const std::filesystem::path& file);
+/// glTF 1.0. `complete` adds what a picture needs and the file lacks (complete_import, and an
+/// exposure that suits its lights); without it the scene may have no camera and no light.
+Scene import_gltf(const std::filesystem::path& file, bool complete = true);
 
 /// Wavefront OBJ with the materials beside it; a missing material file is a note.
-Scene import_obj(const std::filesystem::path& file);
+Scene import_obj(const std::filesystem::path& file, bool complete = true);
 
 /// Whole file as bytes. Throws not_found, unreadable.
 std::string read_bytes(const std::filesystem::path& file);

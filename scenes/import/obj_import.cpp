@@ -157,7 +157,7 @@ bool has_colors(const tinyobj::attrib_t& attributes) {
 
 }  // namespace
 
-Scene import_obj(const fs::path& file) {
+Scene import_obj(const fs::path& file, bool complete) {
   Scene scene;
   scene.id = scene.title = file.stem().string();
   const fs::path folder = file.parent_path();
@@ -202,7 +202,7 @@ Scene import_obj(const fs::path& file) {
                                true});
   }
   if (scene.instances.empty()) throw unreadable("the file has no faces to draw");
-  complete_import(scene);
+  if (complete) complete_import(scene);
   return scene;
 }
 

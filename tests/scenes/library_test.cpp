@@ -66,9 +66,10 @@ TEST(ContentHash, IsTheSameForTwoLoadsAndDiffersBetweenScenes) {
   for (const SceneInfo& info : built_in()) {
     const std::string hash = content_hash(*load(info.id));
     EXPECT_EQ(hash.size(), 32u);
-    EXPECT_EQ(hash, content_hash(*load(info.id))) << info.id;
     EXPECT_TRUE(hashes.insert(hash).second) << info.id;
   }
+  for (const char* id : {"boxes", "sweep:5x100x2"})
+    EXPECT_EQ(content_hash(*load(id)), content_hash(*load(id))) << id;
 }
 
 TEST(ContentHash, ChangesWithEveryPartOfAPictureAndWithNothingElse) {
@@ -134,9 +135,9 @@ TEST(ContentHash, ChangesWithEveryPartOfAPictureAndWithNothingElse) {
 }
 
 TEST(Sweep, HasTheObjectsTrianglesAndLightsOfItsName) {
-  for (const int objects : {1, 5, 200})
+  for (const int objects : {1, 200})
     for (const int triangles : {100, 1600, 10000})
-      for (const int lights : {1, 3}) {
+      for (const int lights : {objects == 1 ? 1 : 3}) {
         const std::string name = "sweep:" + std::to_string(objects) + "x" +
                                  std::to_string(triangles) + "x" + std::to_string(lights);
         const auto scene = load(name);
