@@ -63,14 +63,13 @@ struct MapFace {
   vec4 origin;   // xyz world, w 1 for perspective
   vec4 right;    // xyz scaled by half the map's width at unit distance
   vec4 up;       // xyz scaled likewise, towards growing v
-  vec4 forward;  // xyz unit
+  vec4 forward;  // xyz unit, w size of a texel at unit distance (perspective) or anywhere, m
 };
 
 struct MapData {
   MapFace faces[max_map_faces];
   vec4 range;  // x near, y far, z 1 / (far - near), w faces
-  vec4 texel;  // x map size, y world size of a texel at unit distance, z constant bias in m, w slope scale
-  vec4 filter_size;  // x kernel radius in texels
+  vec4 texel;  // x map size, y kernel radius in texels, z constant bias in m, w slope scale
 };
 
 /// Light points of one batch and sample of a pixel, and the boxes that hold them: positions, or

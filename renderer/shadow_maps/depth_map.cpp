@@ -1,6 +1,7 @@
 #include "renderer/shadow_maps/depth_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace penumbra::shadow_maps {
 
@@ -30,26 +31,28 @@ std::vector<Parameter> map_parameters() {
   strategy.name = "bias_strategy";
   strategy.type = ParameterType::choice;
   strategy.choices = {"constant", "slope", "normal-offset", "receiver-plane", "back-faces"};
-  strategy.default_value = std::string("slope");
+  strategy.default_value = std::string("receiver-plane");
   strategy.meaning =
-      "How self-shadowing is prevented. constant: the map is moved away from the light by bias. "
-      "slope: "
-      "also by the depth that the caster spans over the kernel. normal-offset: the receiver is "
-      "moved "
-      "along its normal. receiver-plane: every texel is compared with the receiver's plane at its "
-      "own "
-      "place. back-faces: only faces turned away from the light are drawn.";
+      "How self-shadowing is prevented. constant: depth is moved away from the light, for facets "
+      "at "
+      "45 degrees. slope: by what each caster's facet spans over the kernel. normal-offset: the "
+      "receiver is moved along its normal. receiver-plane: every texel is compared with the "
+      "receiver's plane at the texel's own place. back-faces: only faces turned away from the "
+      "light "
+      "are drawn.";
   strategy.variant = true;
   list.push_back(strategy);
 
   Parameter bias;
   bias.name = "bias";
   bias.type = ParameterType::real;
-  bias.default_value = 0.005;
+  bias.default_value = 0.0;
   bias.minimum = 0.0;
   bias.maximum = 1000.0;
   bias.unit = "m";
-  bias.meaning = "Distance along the light's axis that is granted to every comparison.";
+  bias.meaning =
+      "Distance along the light's axis granted to every comparison, beside what the strategy "
+      "finds.";
   list.push_back(bias);
 
   Parameter slope_scale;
@@ -59,8 +62,8 @@ std::vector<Parameter> map_parameters() {
   slope_scale.minimum = 0.0;
   slope_scale.maximum = 16.0;
   slope_scale.meaning =
-      "Factor of the part of the bias that follows texel size, kernel and slope; 1 covers the "
-      "kernel.";
+      "Factor of what the strategy finds from texel size, kernel, slope and rounding; 1 is enough, "
+      "0 leaves only bias.";
   list.push_back(slope_scale);
   return list;
 }
@@ -70,7 +73,7 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius) {
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
   // Room for the kernel at the borders, up to a quarter of the map.
   const double guard = std::min((kernel_radius + 1.0) / size, 0.25);
-  const LightView view = fit_light_view(context.scene, context.light, guard);
+  const LightView view = fit_light_view(context.scene, context.light, size, guard);
   if (!image_) {
     vulkan::ImageDescription description;
     description.format = VK_FORMAT_D32_SFLOAT;
@@ -85,10 +88,12 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius) {
   data.range = {view.near_distance, view.far_distance,
                 1.0f / (view.far_distance - view.near_distance),
                 static_cast<float>(view.faces.size())};
-  data.texel = {static_cast<float>(size), view.texel_at_unit_distance / static_cast<float>(size),
-                static_cast<float>(real_of(parameters, "bias")),
-                static_cast<float>(real_of(parameters, "slope_scale"))};
-  data.filter_size = {static_cast<float>(kernel_radius), 0.0f, 0.0f, 0.0f};
+  const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
+  // Positions are floats: this much is lost on the way to a depth.
+  const float rounding = std::ldexp(view.far_distance, -21);
+  data.texel = {static_cast<float>(size), static_cast<float>(kernel_radius),
+                static_cast<float>(real_of(parameters, "bias")) + slope_scale * rounding,
+                slope_scale};
   constants_ = context.constants.push(data);
 
   CasterProgram program;

@@ -1,17 +1,29 @@
 // Reading a linear depth map: where a receiver lies on it, and comparisons texel by texel.
+//
+// Filters never touch the map's image: they call locate, then compare_texel or fetch_depth with whole
+// texels near the place found. Another layout plugs in here, chosen by the constant parameter_layout:
+//   - locate fills a MapPoint: which view (a face here; a cascade or a tile elsewhere), the place in
+//     texels of that view, the width of a texel there, and the receiver's plane as a ratio of two
+//     functions that are affine in texels, which any projective view has, warped ones included;
+//   - fetch_depth answers the stored depth of a texel of that view (from an image here; from a storage
+//     buffer elsewhere, where no sampler reaches), 0 at near and 1 at far;
+//   - receiver_depth turns metres into those units.
+// Only filter hardware-bilinear reads the image itself, so it serves layouts that are one image.
 #ifndef PENUMBRA_DEPTH_MAP_GLSL
 #define PENUMBRA_DEPTH_MAP_GLSL
-#include "renderer/shaders/shader_types.h"
+#include "renderer/shaders/shadow_query.glsl"
 
 layout(std140) uniform MapBlock { MapData map; };
+uniform sampler2DArray shadow_map;
 
 /// A receiver on the map.
 struct MapPoint {
-  int face;        // -1: outside the map, lit
-  vec2 texel;      // place in texels, 0 .. map size
-  float distance;  // m along the face's axis, bias applied
-  vec3 position;   // world, moved where the strategy moves it
-  vec3 normal;     // of the receiver's plane
+  int face;            // view of the map; -1: outside it, lit
+  vec2 texel;          // place in texels, 0 .. map size
+  float distance;      // m along the view's axis
+  float texel_width;   // m at that distance
+  vec3 plane_top;      // the receiver's plane meets the ray through texel + d at a distance of
+  vec3 plane_bottom;   // dot(plane_top, (d, 1)) / dot(plane_bottom, (d, 1)) m
 };
 
 int face_of(vec3 offset) {
@@ -23,50 +35,83 @@ int face_of(vec3 offset) {
 }
 
 /// World size of a texel at this distance along the axis, m.
-float texel_size(int face, float distance) {
-  return map.texel.y * (map.faces[face].origin.w > 0.5 ? distance : 1.0);
+float texel_size(MapFace face, float distance) {
+  return face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
 }
 
-MapPoint locate(ShadowQuery query) {
+/// How far the nearest texel's centre may be, in texels, from a place that a filter reaches.
+float texel_reach(float kernel_radius) { return 1.41421356 * (0.5 + kernel_radius); }
+
+/// `kernel_radius` in texels is how far the filter reads from the receiver's place.
+MapPoint locate(ShadowQuery query, float kernel_radius) {
   MapPoint point;
   point.face = face_of(query.position - map.faces[0].origin.xyz);
-  point.position = query.position;
-  point.normal = query.normal;
   MapFace face = map.faces[point.face];
+  bool perspective = face.origin.w > 0.5;
+  vec3 position = query.position;
   if (parameter_bias_strategy == bias_strategy_normal_offset) {
-    // Far enough along the normal to clear the texels of the kernel on the receiver's own plane.
-    float distance = dot(query.position - face.origin.xyz, face.forward.xyz);
-    float cosine = clamp(dot(query.normal, query.to_light), 0.0, 1.0);
-    float reach = 1.41421356 * (0.5 + map.filter_size.x) * texel_size(point.face, distance);
-    point.position += query.normal * (map.texel.w * reach * sqrt(1.0 - cosine * cosine));
+    // Along the normal until the receiver's own plane, and any convex body behind it, lies wholly
+    // behind the moved point over every texel that the filter reads. A step d across the axis leaves
+    // the plane by d sin(angle between normal and axis).
+    float cosine = dot(query.normal, face.forward.xyz);
+    float across = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float width = texel_size(face, dot(position - face.origin.xyz, face.forward.xyz));
+    position += query.normal * (map.texel.w * texel_reach(kernel_radius) * width * across);
   }
-  vec4 clip = face.clip_from_world * vec4(point.position, 1.0);
+  vec4 clip = face.clip_from_world * vec4(position, 1.0);
   point.texel = (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
-  point.distance = dot(point.position - face.origin.xyz, face.forward.xyz);
+  point.distance = dot(position - face.origin.xyz, face.forward.xyz);
+  point.texel_width = texel_size(face, point.distance);
   if (clip.w <= 0.0 || any(lessThan(point.texel, vec2(0.0))) ||
-      any(greaterThan(point.texel, vec2(map.texel.x))))
+      any(greaterThan(point.texel, vec2(map.texel.x)))) {
     point.face = -1;
+    return point;
+  }
+  // Rays of the view are origin + s (forward + a right + b up), or origin + s forward + a right + b up.
+  vec2 gradient = 2.0 / map.texel.x * vec2(dot(query.normal, face.right.xyz), dot(query.normal, face.up.xyz));
+  float facing = dot(query.normal, face.forward.xyz);
+  if (perspective) {
+    float height = dot(query.normal, position - face.origin.xyz);
+    point.plane_top = vec3(0.0, 0.0, height);
+    point.plane_bottom = vec3(gradient, height / point.distance);
+  } else {
+    point.plane_top = vec3(-gradient, facing * point.distance);
+    point.plane_bottom = vec3(0.0, 0.0, facing);
+  }
   return point;
 }
 
-/// Distance along the axis at which the ray through a place on the map meets the receiver's plane.
-float plane_distance(MapPoint point, vec2 texel) {
-  MapFace face = map.faces[point.face];
-  vec2 ab = 2.0 * texel / map.texel.x - 1.0;
-  vec3 across = ab.x * face.right.xyz + ab.y * face.up.xyz;
-  float height = dot(point.normal, point.position - face.origin.xyz);
-  float met = face.origin.w > 0.5
-                  ? height / dot(point.normal, face.forward.xyz + across)
-                  : (height - dot(point.normal, across)) / dot(point.normal, face.forward.xyz);
-  // A plane seen edge-on is not followed to infinity.
-  float limit = 10.0 * (1.0 + map.filter_size.x) * texel_size(point.face, point.distance) * map.texel.w;
-  return clamp(met, point.distance - limit, point.distance + limit);
+/// Where the ray through `offset` texels from the receiver's place meets the receiver's plane, m along
+/// the axis; never farther than the receiver, so that a surface which rises before the plane (the
+/// ground before a wall) is no occluder.
+float plane_distance(MapPoint point, vec2 offset) {
+  float top = dot(point.plane_top, vec3(offset, 1.0));
+  float bottom = dot(point.plane_bottom, vec3(offset, 1.0));
+  // A lit plane has a bottom below zero; where the ray misses it there is nothing to compare with.
+  if (bottom >= 0.0) return point.distance;
+  return min(top / bottom, point.distance);
 }
 
-/// Receiver's depth to compare with a texel of the map, in the map's units.
-float receiver_depth(MapPoint point, vec2 texel_center) {
+/// Metres along the axis in the map's units.
+float depth_of_distance(float distance) { return (distance - map.range.x) * map.range.z; }
+
+/// The receiver's depth to compare with a texel of the map.
+float receiver_depth(MapPoint point, ivec2 texel) {
   float distance = point.distance;
-  if (parameter_bias_strategy == bias_strategy_receiver_plane) distance = plane_distance(point, texel_center);
-  return (distance - map.range.x) * map.range.z;
+  // Maps of back faces need it where a body is thinner than its slope over a texel.
+  if (parameter_bias_strategy == bias_strategy_receiver_plane || parameter_bias_strategy == bias_strategy_back_faces)
+    distance += map.texel.w * (plane_distance(point, vec2(texel) + 0.5 - point.texel) - point.distance);
+  return depth_of_distance(distance);
+}
+
+/// Depth that the map holds; texels beyond the border repeat it.
+float fetch_depth(MapPoint point, ivec2 texel) {
+  texel = clamp(texel, ivec2(0), ivec2(int(map.texel.x) - 1));
+  return texelFetch(shadow_map, ivec3(texel, point.face), 0).r;
+}
+
+/// 1 where the texel leaves the receiver lit, else 0.
+float compare_texel(MapPoint point, ivec2 texel) {
+  return receiver_depth(point, texel) <= fetch_depth(point, texel) ? 1.0 : 0.0;
 }
 #endif

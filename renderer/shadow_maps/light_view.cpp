@@ -35,7 +35,7 @@ glm::mat4 clip_matrix(const glm::dvec3& origin, const glm::dvec3& right, const g
 }
 
 shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double half_width,
-                          double half_height, bool perspective) {
+                          double half_height, bool perspective, double size) {
   const glm::dvec3 right = glm::cross(axes.forward, axes.up) * half_width;
   const glm::dvec3 down = -axes.up * half_height;
   shader::MapFace face{};
@@ -43,7 +43,7 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
   face.origin = glm::vec4(origin, perspective ? 1.0 : 0.0);
   face.right = glm::vec4(right, 0.0);
   face.up = glm::vec4(down, 0.0);
-  face.forward = glm::vec4(axes.forward, 0.0);
+  face.forward = glm::vec4(axes.forward, 2.0 * half_width / size);
   return face;
 }
 
@@ -77,7 +77,8 @@ Bounds bounds_along(const GpuScene& scene, const Axes& axes) {
 
 }  // namespace
 
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, double guard) {
+LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::uint32_t map_size,
+                         double guard) {
   LightView view;
   const double widen = 1.0 / (1.0 - 2.0 * guard);
   double near = std::numeric_limits<double>::infinity();
@@ -89,8 +90,7 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, double 
     const glm::dvec3 center = bounds.center();
     const double half = std::max(0.5 * std::max(bounds.size().x, bounds.size().y), 1e-6) * widen;
     const glm::dvec3 origin = center.x * right + center.y * axes.up + bounds.low.z * axes.forward;
-    view.faces.push_back(make_face(origin, axes, half, half, false));
-    view.texel_at_unit_distance = static_cast<float>(2.0 * half);
+    view.faces.push_back(make_face(origin, axes, half, half, false, map_size));
     near = 0.0;
     far = bounds.size().z;
   } else {
@@ -103,10 +103,9 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, double 
     }
     const double half = tangent * widen;
     for (const Axes& face_axes : axes) {
-      view.faces.push_back(make_face(light.position, face_axes, half, half, true));
+      view.faces.push_back(make_face(light.position, face_axes, half, half, true, map_size));
       extend_range(scene, view.faces.back(), near, far);
     }
-    view.texel_at_unit_distance = static_cast<float>(2.0 * half);
   }
   if (!(far > 0.0)) far = 1.0;  // nothing before the light
   // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.

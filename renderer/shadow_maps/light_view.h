@@ -13,13 +13,13 @@ struct LightView {
   std::vector<shader::MapFace> faces;
   float near_distance = 0.0f;  ///< metres along a face's forward axis
   float far_distance = 1.0f;
-  float texel_at_unit_distance = 0.0f;  ///< times map size: the map's full width at unit distance
 };
 
 /// Fits the view to what the scene needs: a spot light's cone, the scene's box for a directional
 /// light; near and far enclose everything inside the side planes (van Sambeek 2007, 2.2.3). Casters
 /// before near are clamped to it when drawn with depth clamp. `guard` widens the map by this share
 /// of its width on each side, room for filter kernels.
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, double guard);
+LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::uint32_t map_size,
+                         double guard);
 
 }  // namespace penumbra::shadow_maps
