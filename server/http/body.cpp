@@ -76,23 +76,35 @@ bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && announced_length(request).value_or(1) > 0;
 }
 
-std::string read_body(const httplib::Request& request, const httplib::ContentReader& reader,
-                      std::size_t limit) {
-  std::string body;
-  if (!has_body(request)) return body;
-  const Error too_large("too_large", "at most " + std::to_string(limit) + " bytes", "body");
-  if (announced_length(request).value_or(0) > limit + patience) throw too_large;
-  std::size_t size = 0;
-  // Multipart bodies would be taken apart by the library; nothing here takes them.
-  if (request.is_multipart_form_data()) throw bad_value("Content-Type", "multipart is not taken");
-  const bool whole = reader([&](const char* data, std::size_t length) {
+bool IncomingBody::receive(std::size_t limit, std::string* into) {
+  begun = true;
+  whole = (*reader)([&](const char* data, std::size_t length) {
     size += length;
-    if (size <= limit) body.append(data, length);
+    if (size <= limit && into != nullptr) into->append(data, length);
     return size <= limit + patience;
   });
+  return whole;
+}
+
+std::string IncomingBody::read(std::size_t limit) {
+  std::string body;
+  if (reader == nullptr || !has_body(request)) return body;
+  const Error too_large("too_large", "at most " + std::to_string(limit) + " bytes", "body");
+  if (announced_length(request).value_or(0) > limit + patience) throw too_large;
+  // Multipart bodies would be taken apart by the library; nothing here takes them.
+  if (request.is_multipart_form_data()) throw bad_value("Content-Type", "multipart is not taken");
+  receive(limit, &body);
   if (size > limit) throw too_large;
   if (!whole) throw bad_value("body", "the body cannot be read");
   return body;
+}
+
+bool IncomingBody::finish() {
+  if (reader == nullptr || !has_body(request)) return true;
+  if (begun) return whole;
+  if (announced_length(request).value_or(0) > patience || request.is_multipart_form_data())
+    return false;
+  return receive(0, nullptr);
 }
 
 void check_text(const httplib::Request& request) {

@@ -17,4 +17,8 @@ class Connection {
   int descriptor = -1;
 };
 
+/// Lets no more be read from connections to a port of this process: idle ones end, answers on their
+/// way still leave.
+void shut_reading(int port);
+
 }  // namespace penumbra::server::http

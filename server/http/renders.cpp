@@ -115,7 +115,7 @@ RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
     const auto next = call.service.renders->wait(record.id, std::min(left, 1.0));
     if (!next) throw nothing_here();
     seen = *next;
-    if (!is_over(seen) && connection.closed_by_peer()) {
+    if (!is_over(seen) && !call.service.draining && connection.closed_by_peer()) {
       call.service.renders->cancel(record.id);
       throw Error("cancelled", "the client hung up");
     }

@@ -61,13 +61,13 @@ void log_call(const Call& call, const Match& found, double ms) {
                found.route != nullptr ? found.route->path : "(no route)", call.response.status, ms);
 }
 
-/// Checks permission and calls the handler; `read_body` is empty for requests without a body.
+/// Checks permission and calls the handler; `reader` is null for methods without a body.
 void answer(Service& service, const httplib::Request& request, httplib::Response& response,
             const httplib::ContentReader* reader) {
   const auto start = std::chrono::steady_clock::now();
   Call call{service, request, response};
   Match found = match(request.method, request.path);
-  bool body_read = reader == nullptr;
+  IncomingBody body(request, reader);
   try {
     check_text(request);
     if (found.route == nullptr) {
@@ -77,14 +77,11 @@ void answer(Service& service, const httplib::Request& request, httplib::Response
     }
     call.path = std::move(found.path);
     check_permission(service, *found.route, request);
-    if (reader != nullptr) {
-      call.body = read_body(request, *reader, found.route->largest_body);
-      body_read = true;
-    }
+    call.body = body.read(found.route->largest_body);
     found.route->handle(call);
   } catch (...) {
     const Error error = error_of(std::current_exception());
-    if (body_read || !has_body(request))
+    if (body.finish())
       send_error(response, error);
     else
       send_error_and_close(response, error);
@@ -179,7 +176,7 @@ void install(httplib::Server& server, Service& service) {
   server.Delete(anything, with_body);
   server.Patch(anything, with_body);
   server.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-    if (!response.body.empty() || response.status == 304) return;
+    if (response.has_header("Content-Type") || response.status == 304) return;
     // The library answers by itself what it could not parse or knows no method for.
     const Error error = response.status >= 500   ? Error("internal", "the server failed")
                         : response.status == 404 ? nothing_here()

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "renderer/error.h"
+#include "server/http/connection.h"
 #include "server/http/operations.h"
 #include "server/http/reply.h"
 #include "server/http/routes.h"
@@ -101,13 +102,20 @@ bool Server::stop(double deadline_s) {
   if (!state->started) return true;
   state->started = false;
   state->service.draining = true;
-  auto renders = std::async(std::launch::async, [&] { state->service.renders->drain(deadline_s); });
-  state->api.finish();
-  renders.get();
+  // Publications and sweeps first: what a drain cancels is no failure of theirs.
   state->service.publisher.stop();
   state->service.sweeps.stop();
+  auto renders = std::async(std::launch::async, [&] { state->service.renders->drain(deadline_s); });
+  auto finished = std::async(std::launch::async, [&] { state->api.finish(); });
+  // Connections that stay open without a request would be waited for as long as they may idle.
+  if (finished.wait_for(std::chrono::seconds(1)) != std::future_status::ready)
+    shut_reading(state->api_port);
+  const bool all =
+      finished.wait_for(std::chrono::duration<double>(deadline_s)) == std::future_status::ready;
+  finished.get();
+  renders.get();
   if (state->operations_port > 0) state->operations.finish();
-  return true;
+  return all;
 }
 
 int Server::port() const {
@@ -149,9 +157,10 @@ void wait_for_signal() {
 void print_addresses(const ServeOptions& options, const Server& server) {
   const std::string host =
       options.host.find(':') != std::string::npos ? "[" + options.host + "]" : options.host;
-  const std::string base = options.public_url.empty()
-                               ? "http://" + host + ":" + std::to_string(server.port())
-                               : options.public_url;
+  std::string base = options.public_url.empty()
+                         ? "http://" + host + ":" + std::to_string(server.port())
+                         : options.public_url;
+  while (base.ends_with('/')) base.pop_back();
   std::cout << "Participants: " << base << "/s/thesis-2007\n"
             << "Researchers:  " << base << "/lab?token=" << server.token() << std::endl;
 }

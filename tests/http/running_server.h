@@ -1,0 +1,90 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/http/serve.h"
+#include "tests/http/fake_renders.h"
+#include "tests/http/schema.h"
+#include "tests/storage/folder.h"
+
+namespace penumbra::server::http {
+
+using nlohmann::json;
+
+/// A server on ports of its own, with a fake in place of the renderer, and clients for it.
+class RunningServer : public testing::Test {
+ protected:
+  void SetUp() override { start(); }
+
+  void start() {
+    ServeOptions options;
+    options.port = 0;
+    options.ops_port = 0;
+    options.data = folder.path / "data";
+    server = std::make_unique<Server>(options, [this] {
+      auto fake = std::make_unique<FakeRenders>();
+      renders = fake.get();
+      return fake;
+    });
+    server->start();
+    client = std::make_unique<httplib::Client>("127.0.0.1", server->port());
+    client->set_keep_alive(true);
+    client->set_read_timeout(20);
+    researcher = std::make_unique<httplib::Client>("127.0.0.1", server->port());
+    researcher->set_keep_alive(true);
+    researcher->set_read_timeout(20);
+    researcher->set_bearer_token_auth(server->token());
+  }
+
+  void stop() {
+    client.reset();
+    researcher.reset();
+    server->stop(1.0);
+    server.reset();
+  }
+
+  void restart() {
+    stop();
+    start();
+  }
+
+  httplib::Result post(const std::string& path, const json& body) {
+    return client->Post(path, body.dump(), "application/json");
+  }
+
+  /// Body of an answer, checked against its state and schema of schema/openapi.yaml.
+  static json body_of(const httplib::Result& result, int status, const std::string& schema) {
+    EXPECT_TRUE(result) << httplib::to_string(result.error());
+    if (!result) return nullptr;
+    EXPECT_EQ(result->status, status) << result->body;
+    const auto body = json::parse(result->body, nullptr, false);
+    EXPECT_FALSE(body.is_discarded()) << result->body;
+    expect_schema(body, schema);
+    return body;
+  }
+
+  /// Code of a failure, checked like every other body.
+  static std::string error_of(const httplib::Result& result, int status) {
+    const auto body = body_of(result, status, "Error");
+    return body.is_object() && body.contains("error") ? body["error"]["code"].get<std::string>()
+                                                      : "";
+  }
+
+  static std::string field_of(const httplib::Result& result) {
+    return json::parse(result->body).at("error").at("field").get<std::string>();
+  }
+
+  TemporaryFolder folder;
+  FakeRenders* renders = nullptr;
+  std::unique_ptr<Server> server;
+  std::unique_ptr<httplib::Client> client;
+  std::unique_ptr<httplib::Client> researcher;
+};
+
+}  // namespace penumbra::server::http

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+#include <zip.h>
+
+#include <fstream>
+
+#include "server/http/archive.h"
+#include "server/http/png.h"
+#include "server/http/scene_upload.h"
+#include "server/storage/data_folder.h"
+#include "tests/http/running_server.h"
+
+namespace penumbra::server::http {
+namespace {
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+class AnArchive : public testing::Test {
+ protected:
+  void expect_refused(const std::string& zip, const std::string& reason) {
+    const auto target = folder.path / "inside" / "deep";
+    std::filesystem::create_directories(target);
+    try {
+      unpack(zip, target);
+      FAIL() << "was unpacked";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code, "unreadable");
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path))
+      EXPECT_TRUE(entry.path().string().starts_with((folder.path / "inside").string()));
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(AnArchive, IsUnpackedWithItsFolders) {
+  unpack(zip_of(Files{{"a.gltf", "{}"}, {"textures/b.png", "x"}}), folder.path);
+  EXPECT_EQ(storage::read_file(folder.path / "a.gltf"), "{}");
+  EXPECT_EQ(storage::read_file(folder.path / "textures" / "b.png"), "x");
+}
+
+TEST_F(AnArchive, IsRefusedWhereNamesLeadOutside) {
+  for (const std::string name : {"../evil", "a/../../evil", "/etc/evil", "a\\..\\evil", "c:evil"})
+    expect_refused(zip_of(Files{{name, "x"}}), "names the file");
+}
+
+TEST_F(AnArchive, IsRefusedWhenItIsABomb) {
+  expect_refused(zip_of(Files{{"a.bin", std::string(32 << 20, '\0')}}), "too tightly");
+}
+
+TEST_F(AnArchive, IsRefusedWithTooManyFiles) {
+  Files files;
+  for (int i = 0; i < 1001; ++i) files.emplace_back(std::to_string(i), "x");
+  expect_refused(zip_of(files), "more than 1000 files");
+}
+
+TEST_F(AnArchive, IsRefusedWithAnArchiveInside) {
+  expect_refused(zip_of(Files{{"a.zip", zip_of(Files{{"b", "x"}})}}), "holds an archive");
+}
+
+TEST_F(AnArchive, IsRefusedWithALink) {
+  const auto file = folder.path / "link.zip";
+  int failure = 0;
+  zip_t* zip = zip_open(file.c_str(), ZIP_CREATE, &failure);
+  ASSERT_NE(zip, nullptr);
+  const std::string target = "/etc/passwd";
+  const auto index =
+      zip_file_add(zip, "link", zip_source_buffer(zip, target.data(), target.size(), 0), 0);
+  zip_file_set_external_attributes(zip, static_cast<zip_uint64_t>(index), 0, ZIP_OPSYS_UNIX,
+                                   0120777u << 16);
+  ASSERT_EQ(zip_close(zip), 0);
+  const auto bytes = storage::read_file(file);
+  std::filesystem::remove(file);
+  expect_refused(bytes, "holds a link");
+}
+
+TEST_F(AnArchive, IsRefusedWhenItIsCutShort) {
+  const auto zip = zip_of(Files{{"a.gltf", std::string(5000, 'x')}});
+  expect_refused(zip.substr(0, zip.size() / 2), "damaged");
+}
+
+TEST(PixelsOnly, KeepsThePictureAndNothingElse) {
+  const auto png = pixels_only(grey_png(100, "secret technique"));
+  EXPECT_EQ(chunk_types(png), (std::vector<std::string>{"IHDR", "IDAT", "IEND"}));
+  EXPECT_EQ(png, pixels_only(grey_png(100, "another")));
+  EXPECT_NE(png, pixels_only(grey_png(101, "another")));
+}
+
+TEST(PixelsOnly, RefusesWhatIsCutShort) {
+  const auto png = grey_png(100, "x");
+  for (std::size_t length = 0; length < png.size(); ++length)
+    EXPECT_THROW(pixels_only(png.substr(0, length)), Error) << length;
+}
+
+using UploadedScenes = RunningServer;
+
+TEST_F(UploadedScenes, NeedAnIdThatIsOne) {
+  for (const std::string id : {"..", "%2e%2e", "A", "a%20b", "-a", "a%2fb"}) {
+    const auto result = researcher->Put("/api/v1/scenes/" + id, "{}", "application/json");
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->status == 400 || result->status == 404) << id << result->body;
+  }
+  EXPECT_EQ(error_of(researcher->Put("/api/v1/scenes/boxes", "{}", "application/json"), 409),
+            "conflict");
+  EXPECT_EQ(error_of(researcher->Delete("/api/v1/scenes/boxes"), 409), "conflict");
+  EXPECT_EQ(error_of(researcher->Delete("/api/v1/scenes/unknown"), 404), "not_found");
+}
+
+TEST_F(UploadedScenes, ThatCannotBeReadLeaveNothingBehind) {
+  for (const std::string body : {"", "nonsense", "glTF\2\0\0\0", "PK\3\4broken"}) {
+    const auto result = researcher->Put("/api/v1/scenes/mine", body, "application/octet-stream");
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->status == 422 || result->status == 400) << result->status << result->body;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "data" / "scenes" / "mine"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "incoming"));
+}
+
+}  // namespace
+}  // namespace penumbra::server::http
