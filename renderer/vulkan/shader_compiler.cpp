@@ -7,7 +7,9 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 namespace penumbra::vulkan {
@@ -23,19 +25,6 @@ EShLanguage language_of(VkShaderStageFlagBits stage) {
       return EShLangFragment;
     default:
       return EShLangCompute;
-  }
-}
-
-VkShaderStageFlagBits stage_of(EShLanguage language) {
-  switch (language) {
-    case EShLangVertex:
-      return VK_SHADER_STAGE_VERTEX_BIT;
-    case EShLangGeometry:
-      return VK_SHADER_STAGE_GEOMETRY_BIT;
-    case EShLangFragment:
-      return VK_SHADER_STAGE_FRAGMENT_BIT;
-    default:
-      return VK_SHADER_STAGE_COMPUTE_BIT;
   }
 }
 
@@ -55,18 +44,20 @@ VkDescriptorType descriptor_type(const glslang::TType& type) {
 /// Assigns one binding per name over all stages and notes what it saw.
 class NameResolver : public glslang::TIoMapResolver {
  public:
-  explicit NameResolver(CompiledProgram& program) : program_(program) {}
-
-  int resolveBinding(EShLanguage language, glslang::TVarEntryInfo& entry) override {
+  int resolveBinding(EShLanguage, glslang::TVarEntryInfo& entry) override {
     const glslang::TType& type = entry.symbol->getType();
     if (type.getQualifier().isPushConstant()) return -1;
     if (type.getBasicType() != glslang::EbtSampler && type.getBasicType() != glslang::EbtBlock)
       return -1;
     const std::string name = entry.symbol->getAccessName().c_str();
-    const auto next = static_cast<std::uint32_t>(numbers_.size());
-    const std::uint32_t binding = numbers_.emplace(name, next).first->second;
-    if (binding == next) program_.declared.push_back(name);
-    if (entry.live) note(name, binding, type, stage_of(language));
+    const auto found = std::find_if(seen.begin(), seen.end(),
+                                    [&](const auto& known) { return known.name == name; });
+    const auto binding = static_cast<std::uint32_t>(found - seen.begin());
+    if (found == seen.end()) {
+      const auto count =
+          type.isArray() ? static_cast<std::uint32_t>(type.getCumulativeArraySize()) : 1u;
+      seen.push_back({name, binding, descriptor_type(type), count, 0});
+    }
     entry.newBinding = static_cast<int>(binding);  // glslang reads it from here
     return entry.newBinding;
   }
@@ -89,24 +80,7 @@ class NameResolver : public glslang::TIoMapResolver {
   void reserverStorageSlot(glslang::TVarEntryInfo&, TInfoSink&) override {}
   void addStage(EShLanguage, glslang::TIntermediate&) override {}
 
- private:
-  void note(const std::string& name, std::uint32_t binding, const glslang::TType& type,
-            VkShaderStageFlagBits stage) {
-    auto& list = program_.bindings;
-    const auto found = std::find_if(list.begin(), list.end(),
-                                    [&](const auto& known) { return known.name == name; });
-    if (found != list.end()) {
-      found->stages |= stage;
-      return;
-    }
-    const auto count =
-        type.isArray() ? static_cast<std::uint32_t>(type.getCumulativeArraySize()) : 1u;
-    list.push_back(
-        {name, binding, descriptor_type(type), count, static_cast<VkShaderStageFlags>(stage)});
-  }
-
-  CompiledProgram& program_;
-  std::map<std::string, std::uint32_t> numbers_;
+  std::vector<ReflectedBinding> seen;  ///< in order of binding, which is the index
 };
 
 class LibraryIncluder : public glslang::TShader::Includer {
@@ -123,14 +97,62 @@ class LibraryIncluder : public glslang::TShader::Includer {
   const ShaderLibrary& library_;
 };
 
-/// Whether a variable of the storage class PushConstant is declared (SPIR-V 3.7 and 3.42.8).
-bool declares_push_constants(const std::vector<std::uint32_t>& words) {
+/// What the code of a stage touches. glslang's own notion of live symbols leaves out branches on
+/// constants, which the SPIR-V still contains and drivers and layers hold against the layout.
+struct StaticUse {
+  std::set<std::uint32_t> bindings;
+  bool push_constants = false;
+};
+
+StaticUse static_use(const std::vector<std::uint32_t>& words) {
+  // Opcodes and enumerants of the SPIR-V specification, sections 3.7, 3.20 and 3.49.
+  enum : std::uint32_t {
+    op_function_call = 57,
+    op_variable = 59,
+    op_image_texel_pointer = 60,
+    op_load = 61,
+    op_store = 62,
+    op_access_chain = 65,
+    op_in_bounds_access_chain = 66,
+    op_array_length = 68,
+    op_decorate = 71,
+    decoration_binding = 33,
+    storage_push_constant = 9
+  };
   constexpr std::size_t header = 5;
-  constexpr std::uint32_t op_variable = 59;
-  constexpr std::uint32_t push_constant = 9;
-  for (std::size_t i = header; i < words.size(); i += words[i] >> 16)
-    if ((words[i] & 0xffffu) == op_variable && words[i + 3] == push_constant) return true;
-  return false;
+  std::map<std::uint32_t, std::uint32_t> binding_of;
+  StaticUse use;
+  const auto touch = [&](std::uint32_t id) {
+    const auto found = binding_of.find(id);
+    if (found != binding_of.end()) use.bindings.insert(found->second);
+  };
+  for (std::size_t i = header; i < words.size(); i += words[i] >> 16) {
+    const std::uint32_t* word = &words[i];
+    switch (word[0] & 0xffffu) {
+      case op_decorate:
+        if (word[2] == decoration_binding) binding_of[word[1]] = word[3];
+        break;
+      case op_variable:
+        use.push_constants = use.push_constants || word[3] == storage_push_constant;
+        break;
+      case op_store:
+        touch(word[1]);
+        break;
+      case op_load:
+      case op_image_texel_pointer:
+      case op_array_length:
+      case op_access_chain:
+      case op_in_bounds_access_chain:
+        touch(word[3]);
+        break;
+      case op_function_call:
+        for (std::uint32_t a = 4; a < word[0] >> 16; ++a) touch(word[a]);
+        break;
+      default:
+        break;
+    }
+  }
+  return use;
 }
 
 /// glslang wants one process-wide start.
@@ -177,7 +199,7 @@ CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& sourc
     program.addShader(shader.get());
   }
   CompiledProgram compiled;
-  NameResolver resolver(compiled);
+  NameResolver resolver;
   if (!program.link(messages) || !program.mapIO(&resolver))
     throw std::logic_error(std::string("shaders do not link:\n") + program.getInfoLog());
   for (const auto& [stage, path] : source.stages) {
@@ -188,7 +210,14 @@ CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& sourc
     auto& words = compiled.spirv[stage];
     glslang::GlslangToSpv(*program.getIntermediate(language_of(stage)), words, &logger, &options);
     if (words.empty()) throw std::logic_error("shader " + path + ": " + logger.getAllMessages());
-    compiled.push_constants = compiled.push_constants || declares_push_constants(words);
+    const StaticUse use = static_use(words);
+    compiled.push_constants = compiled.push_constants || use.push_constants;
+    for (const std::uint32_t binding : use.bindings)
+      resolver.seen[binding].stages |= static_cast<VkShaderStageFlags>(stage);
+  }
+  for (const ReflectedBinding& binding : resolver.seen) {
+    compiled.declared.push_back(binding.name);
+    if (binding.stages != 0) compiled.bindings.push_back(binding);
   }
   return compiled;
 }
