@@ -19,9 +19,11 @@ Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   info.allocationSize = needs.size;
   info.memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wanted, preferred);
+  // Checked here, since a driver may promise more than its heap holds.
+  const std::uint32_t heap = device.memory.memoryTypes[info.memoryTypeIndex].heapIndex;
+  const bool fits = needs.size <= device.memory.memoryHeaps[heap].size;
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  const VkResult result = vkAllocateMemory(device.handle, &info, nullptr, &memory);
-  if (result != VK_SUCCESS)
+  if (!fits || vkAllocateMemory(device.handle, &info, nullptr, &memory) != VK_SUCCESS)
     throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) +
                        " bytes");
   return {device.handle, memory};
