@@ -60,6 +60,8 @@ class Reader {
     std::uint64_t number = 0;
     if (value->is_number_unsigned()) {
       number = value->get<std::uint64_t>();
+    } else if (value->is_number_integer() && value->get<std::int64_t>() >= 0) {
+      number = static_cast<std::uint64_t>(value->get<std::int64_t>());
     } else if (value->is_number_float()) {
       const double real = value->get<double>();
       if (!(real >= 0.0 && real <= 0x1p53) || real != std::floor(real))

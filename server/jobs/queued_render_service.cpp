@@ -140,7 +140,7 @@ RenderRecord QueuedRenderService::enqueue(CanonicalRequest request,
 
 std::optional<RenderRecord> QueuedRenderService::stored(const std::string& id) {
   const json record = store_.find(id);
-  if (record.is_null() || !store_.has(id, want::image)) return {};
+  if (record.is_null()) return {};
   RenderRecord found;
   found.id = id;
   found.status = "done";
@@ -215,16 +215,14 @@ std::optional<std::string> QueuedRenderService::artefact(const std::string& id,
     return *bytes;
   }
 
-  // The picture is known but this file of it is not there, or was damaged: have it made.
+  // The render is known but this file of it is not there, or was damaged: have it made.
   const auto known = find(id);
   if (!known || known->status == "failed" || known->status == "cancelled") return {};
   json request = known->request;
-  const json expected_hash = request.at("scene_hash");
+  if (name == want::error_map && request.at("diagnostic") != "") return {};
   for (const char* derived : {"renderer", "scene_hash", "device"}) request.erase(derived);
   CanonicalRequest canonical = read_request(request, context_);
   if (canonical.id != id) return {};  // scene or renderer changed since: that picture is history
-  if (name == want::error_map && !known->request.at("diagnostic").get<std::string>().empty())
-    return {};
   enqueue(std::move(canonical), {name});
   const auto made = wait(id, options_.deadline_s * 2.0);
   if (!made) return {};

@@ -52,7 +52,7 @@ TEST(CanonicalRequest, is_the_same_however_its_values_are_written) {
   const std::string id = read_request(plain(), nowhere).id;
   EXPECT_EQ(id.size(), 32u);
   EXPECT_EQ(read_request(plain_with("width", RenderRequest{}.width), nowhere).id, id);
-  EXPECT_EQ(read_request(plain_with("width", double{RenderRequest{}.width}), nowhere).id, id);
+  EXPECT_EQ(read_request(plain_with("width", 1.0 * RenderRequest{}.width), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("parameters", json::object()), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("camera", nullptr), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("lights", {{"key", json::object()}}), nowhere).id, id);
