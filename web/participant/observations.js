@@ -5,11 +5,11 @@ export class Observations {
   constructor(earlier = {}) {
     this.counts = {
       active_ms: earlier.active_ms ?? 0,
-      enlarged: earlier.enlarged ?? 0,
-      flipped: earlier.flipped ?? 0,
+      enlargements: earlier.enlargements ?? 0,
+      flips: earlier.flips ?? 0,
       blurs: earlier.blurs ?? 0,
       load_failures: earlier.load_failures ?? 0,
-      swapped_direction: earlier.swapped_direction ?? false,
+      swaps: earlier.swaps ?? 0,
     };
     this.started_at = earlier.started_at ?? null;
     this.since = null;  // performance.now() of the moment since when the page is in front and focused
@@ -51,10 +51,6 @@ export class Observations {
     this.counts[what] += 1;
   }
 
-  swapped() {
-    this.counts.swapped_direction = true;
-  }
-
   draft() {
     this.settle();
     return { ...this.counts, started_at: this.started_at };
@@ -72,6 +68,7 @@ export class Observations {
       window: { width: innerWidth, height: innerHeight },
       screen: { width: screen.width, height: screen.height },
       device_pixel_ratio: devicePixelRatio,
+      answered_at: new Date().toISOString(),
     };
   }
 }

@@ -76,7 +76,7 @@ export class RankingPage {
         letter: this.strings.reference_short, name: this.strings.reference });
     }
     this.viewer = new Viewer({ pictures, strings: this.strings,
-      on_flip: () => this.note("flipped"), on_show: () => this.note("enlarged") });
+      on_flip: () => this.note("flips"), on_show: () => this.note("enlargements") });
     this.viewer.open(slot);
   }
 
@@ -151,7 +151,7 @@ export class RankingPage {
   }
 
   turn_round() {
-    this.observations.swapped();
+    this.observations.count("swaps");
     (this.digits ?? this.arrangement).turn_round();
     this.board?.refresh();
     this.changed();
@@ -164,6 +164,7 @@ export class RankingPage {
       ...(this.digits ? { digits: this.digits.answer() }
         : { shelves: this.arrangement.answer(), all_same: this.arrangement.all_same }),
       ...(difficulty === null ? {} : { difficulty }),
+      order_shown: this.page.images.map(({ slot }) => slot),
       ...this.observations.answer(),
     };
   }
