@@ -11,6 +11,7 @@
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/read_back.h"
 #include "renderer/frame/scene_pass.h"
+#include "renderer/reference/intersector.h"
 #include "renderer/render.h"
 
 namespace penumbra {
@@ -356,10 +357,16 @@ void FrameRun::read_results(RenderResult& result) {
 void FrameRun::add_shared_memory(vulkan::MemoryLedger& memory) const {
   bool stencil = false;
   bool adjacency = false;
+  bool acceleration = false;
   for (const auto& light : lights_) {
     stencil = stencil || light->needs().stencil;
     adjacency = adjacency || light->needs().adjacency;
+    acceleration = acceleration || light->needs().acceleration_structure;
   }
+  if (acceleration)
+    for (const ResourceCost& part :
+         reference::Intersector::of(state_.device, setup_.scene).memory())
+      memory.add(part.name, part.bytes);
   if (adjacency) memory.add("adjacency", setup_.scene.adjacency(state_.device).indices.size());
   if (!stencil) return;
   // A format with stencil may hold padding too: all that it takes over depth alone is the price.

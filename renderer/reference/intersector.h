@@ -10,7 +10,8 @@ class Intersector {
  public:
   Intersector(vulkan::Device& device, const GpuScene& scene);
 
-  /// The one of this scene, built when first asked for.
+  /// The one of this scene, built when first asked for. Its memory is charged to a technique by
+  /// Requirements::acceleration_structure.
   static const Intersector& of(vulkan::Device& device, const GpuScene& scene);
 
   std::uint32_t node_count() const { return node_count_; }

@@ -90,8 +90,6 @@ void OcclusionMask::trace(PrepareContext& context) {
 void OcclusionMask::create_images(PrepareContext& context, bool with_candidates) {
   mask_ = make_image(context, "occlusion mask", 1);
   if (with_candidates) candidates_ = make_image(context, "occluder range", 2);
-  for (const ResourceCost& resource : Intersector::of(context.device, context.scene).memory())
-    context.memory.add(resource.name, resource.bytes);
 }
 
 void OcclusionMask::dispatch(PrepareContext& context, const std::string& name,

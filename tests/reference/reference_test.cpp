@@ -216,13 +216,19 @@ TEST_F(ReferencePicture, IsOpaqueWhereNoAlphaIsBelowTheCutoff) {
 }
 
 TEST_F(ReferencePicture, ChargesHierarchyAndMaskToTheTechnique) {
-  const RenderResult result = render(request("boxes", "reference"));
+  const auto scene = scenes::load("disco-box");
+  const RenderResult result = render(request(scene, "reference"));
   std::map<std::string, std::uint64_t> bytes;
   for (const ResourceCost& resource : result.cost.technique_memory)
     bytes[resource.name] = resource.bytes;
-  EXPECT_GE(bytes["occlusion mask"], 64u * 64u * 4u);
-  EXPECT_GT(bytes["hierarchy nodes"], 0u);
-  EXPECT_GT(bytes["hierarchy triangles"], 0u);
+  EXPECT_GE(bytes["occlusion mask"], scene->lights.size() * 64 * 64 * 4);
+  // One hierarchy for all lights: 48 bytes a triangle, and 2n - 1 nodes of 32 bytes.
+  std::uint64_t triangles = 0;
+  for (const Instance& instance : scene->instances)
+    if (instance.casts_shadow) triangles += scene->meshes[instance.mesh].indices.size() / 3;
+  EXPECT_GT(scene->lights.size(), 1u);
+  EXPECT_EQ(bytes["hierarchy triangles"], triangles * 48);
+  EXPECT_EQ(bytes["hierarchy nodes"], (2 * triangles - 1) * 32);
 }
 
 TEST_F(ReferencePicture, SoftensWithTheRaysOfRayTracing) {
