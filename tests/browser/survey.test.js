@@ -67,6 +67,7 @@ test("a picture is dragged to a shelf, and from there to another and back to the
   await visit(async (person) => {
     await person.enter();
     const drag = async (letter, target) => {
+      await person.page.waitForFunction(() => document.getAnimations().length === 0);
       const from = await person.picture(letter).boundingBox();
       const to = await target.boundingBox();
       await person.page.mouse.move(from.x + from.width / 2, from.y + from.height / 2);
