@@ -116,6 +116,29 @@ fs::path write_upload(const fs::path& folder, const std::string& bytes) {
   return folder / "scene.json";
 }
 
+/// Reads it for good; messages name the file as the sender knows it.
+std::shared_ptr<const Scene> load_upload(const fs::path& file, const fs::path& folder) {
+  try {
+    return scenes::load(file.string());
+  } catch (const Error& error) {
+    std::string message = error.what();
+    const auto prefix = folder.string() + "/";
+    for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix))
+      message.erase(at, prefix.size());
+    throw Error(error.code == "not_found" ? "unreadable" : error.code, message, error.field);
+  }
+}
+
+/// Where a scene of that id lies: an uploaded one is a folder, one of the command line a file.
+std::vector<fs::path> places_of(const fs::path& data, const std::string& id) {
+  std::vector<fs::path> places;
+  if (!fs::is_directory(data / "scenes")) return places;
+  for (const auto& entry : fs::directory_iterator(data / "scenes"))
+    if ((entry.is_directory() ? entry.path().filename() : entry.path().stem()) == id)
+      places.push_back(entry.path());
+  return places;
+}
+
 }  // namespace
 
 void check_scene_id(const std::string& id) {
@@ -164,21 +187,26 @@ void unpack(const std::string& bytes, const fs::path& folder) {
   }
 }
 
+bool has_scene(const fs::path& data, const std::string& id) {
+  return !places_of(data, id).empty();
+}
+
 std::shared_ptr<const Scene> store_scene(const fs::path& data, const std::string& id,
                                          const std::string& bytes) {
   const Staging staging(data);
   const auto fresh = staging.path / "scene";
   fs::create_directories(fresh);
-  const auto scene = scenes::load(write_upload(fresh, bytes).string());
-  const auto place = data / "scenes" / id;
-  fs::create_directories(place.parent_path());
-  if (fs::exists(place)) fs::rename(place, staging.path / "old");
-  fs::rename(fresh, place);
+  const auto scene = load_upload(write_upload(fresh, bytes), fresh);
+  fs::create_directories(data / "scenes");
+  for (const auto& old : places_of(data, id)) fs::rename(old, staging.path / old.filename());
+  fs::rename(fresh, data / "scenes" / id);
   return scene;
 }
 
 bool remove_scene(const fs::path& data, const std::string& id) {
-  return fs::remove_all(data / "scenes" / id) > 0;
+  const auto places = places_of(data, id);
+  for (const auto& place : places) fs::remove_all(place);
+  return !places.empty();
 }
 
 }  // namespace penumbra::server::http

@@ -11,6 +11,8 @@ namespace penumbra::server::http {
 /// Throws bad_value for anything but 1 to 64 of a-z 0-9 - _, beginning with a letter or digit.
 void check_scene_id(const std::string& id);
 
+bool has_scene(const std::filesystem::path& data, const std::string& id);
+
 /// Checks and stores an uploaded scene as data/scenes/ID/: a glTF binary, a zip with one glTF file
 /// and what it names, or a scene document; which one is told by its first bytes. The old scene of
 /// that id stays where the new one cannot be read. Throws unreadable, bad_value.

@@ -27,7 +27,7 @@ void put_scene(Call& call) {
   check_scene_id(id);
   if (is_built_in(id)) throw Error("conflict", "built-in scenes cannot be replaced", "id");
   const auto& data = call.service.folder.path();
-  const bool replaced = std::filesystem::exists(data / "scenes" / id);
+  const bool replaced = has_scene(data, id);
   const auto scene = store_scene(data, id, call.body);
   send_json(call.response, replaced ? 200 : 201,
             {{"id", id},

@@ -3,6 +3,8 @@
 
 #include <fstream>
 
+#include "scenes/export.h"
+#include "scenes/library.h"
 #include "server/http/archive.h"
 #include "server/http/png.h"
 #include "server/http/scene_upload.h"
@@ -103,6 +105,47 @@ TEST_F(UploadedScenes, NeedAnIdThatIsOne) {
             "conflict");
   EXPECT_EQ(error_of(researcher->Delete("/api/v1/scenes/boxes"), 409), "conflict");
   EXPECT_EQ(error_of(researcher->Delete("/api/v1/scenes/unknown"), 404), "not_found");
+}
+
+TEST_F(UploadedScenes, AreListedReplacedAndRemoved) {
+  const auto glb = scenes::encode_glb(*scenes::load("sweep:2x50x1"));
+  const auto put = [&](const std::string& bytes) {
+    return researcher->Put("/api/v1/scenes/mine", bytes, "model/gltf-binary");
+  };
+  EXPECT_EQ(body_of(put(glb), 201, "Scene")["id"], "mine");
+  body_of(put(zip_of(Files{{"folder/any.glb", glb}})), 200, "Scene");
+  const auto listed = [&] {
+    const auto list = body_of(client->Get("/api/v1/scenes"), 200, "SceneList");
+    std::vector<std::string> imported;
+    for (const auto& scene : list["scenes"])
+      if (!scene["built_in"].get<bool>()) imported.push_back(scene["id"]);
+    return imported;
+  };
+  EXPECT_EQ(listed(), std::vector<std::string>{"mine"});
+  EXPECT_EQ(scenes::content_hash(*scenes::load("mine", folder.path / "data")),
+            scenes::content_hash(*scenes::load("sweep:2x50x1")));
+  EXPECT_EQ(researcher->Delete("/api/v1/scenes/mine")->status, 204);
+  EXPECT_TRUE(listed().empty());
+}
+
+TEST_F(UploadedScenes, ThatWereImportedAsAFileAreReplacedToo) {
+  const auto data = folder.path / "data";
+  std::filesystem::create_directories(data / "scenes");
+  scenes::export_glb(*scenes::load("sweep:2x50x1"), data / "scenes" / "mine.glb");
+  const auto other = scenes::encode_glb(*scenes::load("sweep:3x50x1"));
+  body_of(researcher->Put("/api/v1/scenes/mine", other, "model/gltf-binary"), 200, "Scene");
+  EXPECT_EQ(scenes::content_hash(*scenes::load("mine", data)),
+            scenes::content_hash(*scenes::load("sweep:3x50x1")));
+}
+
+TEST_F(UploadedScenes, AreKeptWhereTheNewOneCannotBeRead) {
+  const auto glb = scenes::encode_glb(*scenes::load("sweep:2x50x1"));
+  body_of(researcher->Put("/api/v1/scenes/mine", glb, "model/gltf-binary"), 201, "Scene");
+  const auto broken =
+      researcher->Put("/api/v1/scenes/mine", glb.substr(0, glb.size() / 2), "model/gltf-binary");
+  EXPECT_EQ(error_of(broken, 422), "unreadable");
+  EXPECT_EQ(broken->body.find(folder.path.string()), std::string::npos) << broken->body;
+  EXPECT_NO_THROW(scenes::load("mine", folder.path / "data"));
 }
 
 TEST_F(UploadedScenes, ThatCannotBeReadLeaveNothingBehind) {

@@ -1,0 +1,161 @@
+// The public set-up as deploy/nginx.conf describes it: the real nginx in front of the server.
+#include <arpa/inet.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <thread>
+
+#include "tests/http/running_server.h"
+
+namespace penumbra::server::http {
+namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class BehindNginx : public RunningServer {
+ protected:
+  void SetUp() override {
+    RunningServer::SetUp();
+    make_certificate();
+    port = free_port();
+    write_configuration();
+    process = ::fork();
+    if (process == 0) {
+      const auto configuration = (place / "nginx.conf").string();
+      ::execl("/usr/sbin/nginx", "nginx", "-c", configuration.c_str(), "-p", place.c_str(),
+              static_cast<char*>(nullptr));
+      ::_exit(127);
+    }
+    outside = std::make_unique<httplib::SSLClient>("127.0.0.1", port);
+    outside->enable_server_certificate_verification(false);
+    outside->set_default_headers({{"Host", "study.example.org"}});
+    outside->set_connection_timeout(2);
+    outside->set_read_timeout(10);
+    bool up = false;
+    for (int i = 0; i < 100 && !up; ++i) {
+      up = static_cast<bool>(outside->Get("/"));
+      if (!up) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    ASSERT_TRUE(up) << text_of(place / "start.log");
+  }
+
+  void TearDown() override {
+    outside.reset();
+    ::kill(process, SIGQUIT);
+    ::waitpid(process, nullptr, 0);
+  }
+
+  void make_certificate() const {
+    std::filesystem::create_directories(place);
+    const auto command = "openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=x -days 2 -keyout " +
+                         (place / "privkey.pem").string() + " -out " +
+                         (place / "fullchain.pem").string() + " 2>/dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+  }
+
+  /// A port that was free a moment ago.
+  static int free_port() {
+    const int descriptor = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ::bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address);
+    ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size);
+    ::close(descriptor);
+    return ntohs(address.sin_port);
+  }
+
+  /// The file as it is, with this machine's ports and paths.
+  void write_configuration() const {
+    auto site = text_of(std::string(PENUMBRA_SOURCE_DIR) + "/deploy/nginx.conf");
+    const auto replace = [&](const std::string& what, const std::string& by) {
+      const auto changed = std::regex_replace(site, std::regex(what), by);
+      ASSERT_NE(changed, site) << what;
+      site = changed;
+    };
+    replace("/etc/letsencrypt/live/study\\.example\\.org", place.string());
+    replace("/var/log/nginx", place.string());
+    replace("127\\.0\\.0\\.1:8080", "127.0.0.1:" + std::to_string(server->port()));
+    replace("listen \\[::\\]:[^;]*;", "");
+    replace("listen 443 ", "listen 127.0.0.1:" + std::to_string(port) + " ");
+    replace("listen 80;", "listen unix:" + (place / "plain.socket").string() + ";");
+    std::ofstream(place / "site.conf") << site;
+    std::ofstream(place / "nginx.conf")
+        << (::geteuid() == 0 ? "user root;\n" : "") << "daemon off;\npid " << place.string()
+        << "/pid;\nerror_log " << place.string() << "/start.log;\nevents {}\nhttp {\n"
+        << "client_body_temp_path body;\nproxy_temp_path proxy;\nfastcgi_temp_path fastcgi;\n"
+        << "uwsgi_temp_path uwsgi;\nscgi_temp_path scgi;\ninclude site.conf;\n}\n";
+  }
+
+  std::filesystem::path place = folder.path / "nginx";
+  int port = 0;
+  pid_t process = -1;
+  std::unique_ptr<httplib::SSLClient> outside;
+};
+
+TEST_F(BehindNginx, TheServiceAnswersAsBefore) {
+  body_of(outside->Get("/api/v1/scenes"), 200, "SceneList");
+  EXPECT_EQ(error_of(outside->Get("/api/v1/studies"), 401), "unauthorized");
+  const auto image = outside->Get("/api/v1/image?scene=boxes&technique=none");
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->body, FakeRenders::png_of("none"));
+  EXPECT_FALSE(image->get_header_value("Strict-Transport-Security").empty());
+}
+
+TEST_F(BehindNginx, SessionsAreForEncryptedConnectionsOnly) {
+  const auto opened = outside->Get("/lab?token=" + server->token());
+  ASSERT_TRUE(opened);
+  EXPECT_NE(opened->get_header_value("Set-Cookie").find("Secure"), std::string::npos);
+}
+
+TEST_F(BehindNginx, TheSitesOwnOriginIsAccepted) {
+  const json body = {{"scene", "boxes"}, {"technique", "none"}};
+  const auto from = [&](const std::string& origin) {
+    return outside->Post("/api/v1/renders", {{"Origin", origin}}, body.dump(), "application/json");
+  };
+  body_of(from("https://study.example.org"), 200, "Render");
+  EXPECT_EQ(error_of(from("https://evil.example"), 403), "forbidden");
+}
+
+TEST_F(BehindNginx, LargeBodiesAreForScenesOnly) {
+  const std::string large(2 << 20, ' ');
+  EXPECT_EQ(outside->Post("/api/v1/renders", large, "application/json")->status, 413);
+  EXPECT_EQ(error_of(outside->Put("/api/v1/scenes/mine", large, "application/json"), 401),
+            "unauthorized");
+}
+
+TEST_F(BehindNginx, FloodsFromOneAddressAreSlowedDown) {
+  int refused = 0;
+  for (int i = 0; i < 400; ++i)
+    if (outside->Get("/api/v1/renders/unknown")->status == 429) ++refused;
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(BehindNginx, ItsLogHoldsNoTokens) {
+  outside->Get("/api/v1/participants/a-persons-token");
+  outside->Delete("/api/v1/withdrawals/a-persons-code");
+  outside->Get("/lab?token=" + server->token());
+  std::string log;
+  for (int i = 0; i < 40 && log.find("/lab") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    log = text_of(place / "penumbra.log");
+  }
+  EXPECT_NE(log.find("GET /api/v1/participants 404"), std::string::npos) << log;
+  EXPECT_EQ(log.find("a-persons"), std::string::npos) << log;
+  EXPECT_EQ(log.find(server->token()), std::string::npos) << log;
+}
+
+}  // namespace
+}  // namespace penumbra::server::http
