@@ -68,11 +68,11 @@ std::vector<Parameter> map_parameters() {
   return list;
 }
 
-void DepthMap::draw(PrepareContext& context, double kernel_radius) {
+void DepthMap::draw(PrepareContext& context, double kernel_radius, double border) {
   const ParameterValues& parameters = context.input.parameters;
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
-  // Room for the kernel at the borders, up to a quarter of the map.
-  const double guard = std::min((kernel_radius + 1.0) / size, 0.25);
+  // Room at the borders, up to a quarter of the map.
+  const double guard = std::min((border + 1.0) / size, 0.25);
   const LightView view = fit_light_view(context.scene, context.light, size, guard);
   if (!image_) {
     vulkan::ImageDescription description;

@@ -20,21 +20,13 @@ void main() {
 #endif
   float distance = dot(world_position - face.origin.xyz, face.forward.xyz);
   float texel = face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
-  float share = 0.0;  // of a texel's width, granted beside the constant bias
-  if (parameter_bias_strategy == bias_strategy_constant) {
-    // What a facet at 45 degrees spans over the kernel.
-    share = 0.5 + map.texel.y;
-  } else if (parameter_bias_strategy == bias_strategy_slope ||
-             (parameter_bias_strategy == bias_strategy_back_faces && gl_FrontFacing)) {
+  float bias = map.texel.z;
+  if (parameter_bias_strategy == bias_strategy_slope ||
+      (parameter_bias_strategy == bias_strategy_back_faces && gl_FrontFacing)) {
     // What this facet spans over the kernel; a facet seen edge-on is not followed to infinity. The
     // front faces of double-sided materials stand in maps of back faces too.
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
-    share = (1.0 + 2.0 * map.texel.y) * min(span / texel, 10.0);
-  } else if (parameter_bias_strategy != bias_strategy_back_faces) {
-    // The receiver's plane is known, but bent surfaces leave it. Half a texel and a quarter of the
-    // radius make as many pixels too dark as too bright on the survey's scenes.
-    share = 0.5 + 0.25 * map.texel.y;
+    bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
-  float bias = map.texel.z + map.texel.w * share * texel;
   gl_FragDepth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
 }

@@ -3,7 +3,7 @@
 // Filters never touch the map's image: they call locate, then compare_texel or fetch_depth with whole
 // texels near the place found. Another layout plugs in here, chosen by the constant parameter_layout:
 //   - locate fills a MapPoint: which view (a face here; a cascade or a tile elsewhere), the place in
-//     texels of that view, the width of a texel there, and the receiver's plane as a ratio of two
+//     texels of that view, and the receiver's plane as a ratio of two
 //     functions that are affine in texels, which any projective view has, warped ones included;
 //   - fetch_depth answers the stored depth of a texel of that view (from an image here; from a storage
 //     buffer elsewhere, where no sampler reaches), 0 at near and 1 at far;
@@ -21,7 +21,7 @@ struct MapPoint {
   int face;            // view of the map; -1: outside it, lit
   vec2 texel;          // place in texels, 0 .. map size
   float distance;      // m along the view's axis
-  float texel_width;   // m at that distance
+  float grant;         // m that every comparison leaves to the receiver
   vec3 plane_top;      // the receiver's plane meets the ray through texel + d at a distance of
   vec3 plane_bottom;   // dot(plane_top, (d, 1)) / dot(plane_bottom, (d, 1)) m
 };
@@ -42,6 +42,19 @@ float texel_size(MapFace face, float distance) {
 /// How far the nearest texel's centre may be, in texels, from a place that a filter reaches.
 float texel_reach(float kernel_radius) { return 1.41421356 * (0.5 + kernel_radius); }
 
+/// What the receiver is granted in every comparison, in widths of a texel. The map itself was moved by
+/// the constant bias and, with strategy slope, by the slope of its casters.
+float granted_texels(float kernel_radius) {
+  // What a facet at 45 degrees spans over the kernel.
+  if (parameter_bias_strategy == bias_strategy_constant) return 0.5 + kernel_radius;
+  // The receiver's plane is known, but bent surfaces leave it. Half a texel and a quarter of the radius
+  // make as many pixels too dark as too bright on the survey's scenes.
+  if (parameter_bias_strategy == bias_strategy_normal_offset ||
+      parameter_bias_strategy == bias_strategy_receiver_plane)
+    return 0.5 + 0.25 * kernel_radius;
+  return 0.0;
+}
+
 /// `kernel_radius` in texels is how far the filter reads from the receiver's place.
 MapPoint locate(ShadowQuery query, float kernel_radius) {
   MapPoint point;
@@ -61,7 +74,7 @@ MapPoint locate(ShadowQuery query, float kernel_radius) {
   vec4 clip = face.clip_from_world * vec4(position, 1.0);
   point.texel = (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
   point.distance = dot(position - face.origin.xyz, face.forward.xyz);
-  point.texel_width = texel_size(face, point.distance);
+  point.grant = map.texel.w * granted_texels(kernel_radius) * texel_size(face, point.distance);
   if (clip.w <= 0.0 || any(lessThan(point.texel, vec2(0.0))) ||
       any(greaterThan(point.texel, vec2(map.texel.x)))) {
     point.face = -1;
@@ -101,7 +114,7 @@ float receiver_depth(MapPoint point, ivec2 texel) {
   // Maps of back faces need it where a body is thinner than its slope over a texel.
   if (parameter_bias_strategy == bias_strategy_receiver_plane || parameter_bias_strategy == bias_strategy_back_faces)
     distance += map.texel.w * (plane_distance(point, vec2(texel) + 0.5 - point.texel) - point.distance);
-  return depth_of_distance(distance);
+  return depth_of_distance(distance - point.grant);
 }
 
 /// Depth that the map holds; texels beyond the border repeat it.

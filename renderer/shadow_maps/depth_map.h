@@ -15,8 +15,12 @@ std::vector<Parameter> map_parameters();
 class DepthMap {
  public:
   /// Draws the map for this frame. `kernel_radius` in texels is how far the filter reads from the
-  /// receiver's place; it widens map and bias.
-  void draw(PrepareContext& context, double kernel_radius);
+  /// receiver's place; the bias of strategy slope follows it. The map is wider than what it serves
+  /// by `border` texels.
+  void draw(PrepareContext& context, double kernel_radius, double border);
+  void draw(PrepareContext& context, double kernel_radius) {
+    draw(context, kernel_radius, kernel_radius);
+  }
 
   /// Names for renderer/shadow_maps/depth_map.glsl: "shadow_map" and "MapBlock".
   void bind(vulkan::Bindings& bindings,

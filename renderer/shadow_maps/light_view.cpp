@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "renderer/frame/prepare_context.h"
+#include <limits>
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -47,17 +46,47 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
   return face;
 }
 
-/// Smallest and largest distance along forward of the boxes that may touch the face.
-void extend_range(const GpuScene& scene, const shader::MapFace& face, double& near, double& far) {
-  for (const DrawRange& range : scene.ranges()) {
-    if (!may_touch(face.clip_from_world, range.low, range.high)) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec3 point((corner & 1) != 0 ? range.high.x : range.low.x,
-                             (corner & 2) != 0 ? range.high.y : range.low.y,
-                             (corner & 4) != 0 ? range.high.z : range.low.z);
-      const double distance = glm::dot(point - glm::dvec3(face.origin), glm::dvec3(face.forward));
-      near = std::min(near, distance);
-      far = std::max(far, distance);
+/// The part of a convex polygon where `side` is not negative (Sutherland and Hodgman 1974).
+std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const glm::dvec4& side) {
+  std::vector<glm::dvec3> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3& a = polygon[i];
+    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
+    const double inside_a = glm::dot(side, glm::dvec4(a, 1.0));
+    const double inside_b = glm::dot(side, glm::dvec4(b, 1.0));
+    if (inside_a >= 0.0) kept.push_back(a);
+    if ((inside_a < 0.0) != (inside_b < 0.0))
+      kept.push_back(glm::mix(a, b, inside_a / (inside_a - inside_b)));
+  }
+  return kept;
+}
+
+/// Widens near..far by the part of a box between the face's side planes. A box that reaches past
+/// them would else begin behind the light.
+void extend_range(const shader::MapFace& face, const glm::dvec3& low, const glm::dvec3& high,
+                  double& near, double& far) {
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(face.clip_from_world));
+  const glm::dvec4 sides[4] = {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1],
+                               rows[3] + rows[1]};
+  const glm::dvec3 origin(face.origin);
+  // All corners of box and pyramid together lie on the box's faces, but for the pyramid's tip.
+  if (glm::all(glm::lessThanEqual(low, origin)) && glm::all(glm::lessThanEqual(origin, high)))
+    near = std::min(near, 0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const double level : {low[axis], high[axis]}) {
+      std::vector<glm::dvec3> polygon(4);
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        polygon[corner][axis] = level;
+        polygon[corner][u] = corner == 1 || corner == 2 ? high[u] : low[u];
+        polygon[corner][v] = corner >= 2 ? high[v] : low[v];
+      }
+      for (const glm::dvec4& side : sides) polygon = clip(polygon, side);
+      for (const glm::dvec3& point : polygon) {
+        const double distance = glm::dot(point - origin, glm::dvec3(face.forward));
+        near = std::min(near, distance);
+        far = std::max(far, distance);
+      }
     }
   }
 }
@@ -104,7 +133,8 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::ui
     const double half = tangent * widen;
     for (const Axes& face_axes : axes) {
       view.faces.push_back(make_face(light.position, face_axes, half, half, true, map_size));
-      extend_range(scene, view.faces.back(), near, far);
+      for (const DrawRange& range : scene.ranges())
+        extend_range(view.faces.back(), glm::dvec3(range.low), glm::dvec3(range.high), near, far);
     }
   }
   if (!(far > 0.0)) far = 1.0;  // nothing before the light

@@ -1,0 +1,124 @@
+#include "renderer/shadow_maps/blurred_map.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace penumbra::shadow_maps {
+
+std::vector<Parameter> blur_parameters() {
+  std::vector<Parameter> list;
+  Parameter blur;
+  blur.name = "blur";
+  blur.type = ParameterType::integer;
+  blur.default_value = std::int64_t{2};
+  blur.minimum = 0;
+  blur.maximum = 16;
+  blur.unit = "texels";
+  blur.meaning =
+      "Radius of the filter that is run over the map; it reads 2 blur + 1 texels a side.";
+  blur.variant = true;
+  list.push_back(blur);
+
+  Parameter filter;
+  filter.name = "blur_filter";
+  filter.type = ParameterType::choice;
+  filter.choices = {"box", "gauss"};
+  filter.default_value = std::string("gauss");
+  filter.meaning =
+      "Weights of that filter. box: equal. gauss: a bell of which two standard deviations fit in.";
+  filter.variant = true;
+  list.push_back(filter);
+
+  Parameter mips;
+  mips.name = "mips";
+  mips.type = ParameterType::boolean;
+  mips.default_value = true;
+  mips.meaning = "Read means over more texels where a pixel covers more.";
+  list.push_back(mips);
+
+  Parameter anisotropic;
+  anisotropic.name = "anisotropic";
+  anisotropic.type = ParameterType::boolean;
+  anisotropic.default_value = false;
+  anisotropic.meaning =
+      "Read several means along the direction in which a pixel covers most, up to 16; needs mips.";
+  list.push_back(anisotropic);
+  return list;
+}
+
+void BlurredMap::draw(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
+                      VkFormat format) {
+  const bool mips = boolean_of(context.input.parameters, "mips");
+  sampling_ = !mips ? vulkan::Sampling::linear
+              : boolean_of(context.input.parameters, "anisotropic")
+                  ? vulkan::Sampling::anisotropic
+                  : vulkan::Sampling::linear_mipmapped;
+  if (!image_) {
+    vulkan::ImageDescription description = depth.image().description();
+    description.format = format;
+    description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    rows_ = vulkan::Image(context.device, context.memory, "blurred rows", description);
+    description.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (mips) description.levels = static_cast<std::uint32_t>(std::bit_width(description.width));
+    image_ = vulkan::Image(context.device, context.memory, "blurred map", description);
+  }
+  for (std::uint32_t face = 0; face < image_.description().layers; ++face)
+    blur(context, depth, encoder, face);
+  if (mips) context.pass("mips", [&](vulkan::Commands& commands) { reduce(commands); });
+}
+
+void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
+                      std::uint32_t face) {
+  const auto run = [&](const std::string& name, const std::string& fragment,
+                       const vulkan::Image& target, const vulkan::Bindings& bindings) {
+    vulkan::ProgramSource source;
+    source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                     {VK_SHADER_STAGE_FRAGMENT_BIT, fragment}};
+    source.preamble = context.declarations;
+    vulkan::GraphicsState state;
+    state.color_formats = {target.description().format};
+    vulkan::RenderTargets targets;
+    targets.width = target.description().width;
+    targets.height = target.description().height;
+    targets.colors = {{target.slice(face), false, {}}};
+    const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+    context.pass(name, [&](vulkan::Commands& commands) {
+      commands.begin_rendering(targets);
+      commands.bind(pipeline, bindings);
+      commands.constants(face);
+      commands.full_screen_triangle();
+      commands.end_rendering();
+    });
+  };
+  vulkan::Bindings rows;
+  rows.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
+  run("encode and blur", encoder, rows_, rows);
+  vulkan::Bindings columns;
+  columns.texture("blurred_rows", rows_, vulkan::Sampling::nearest);
+  run("blur", "renderer/shadow_maps/blurred_map.frag", image_, columns);
+}
+
+/// Every level is the mean of the one before, 2x2 texels at a time.
+void BlurredMap::reduce(vulkan::Commands& commands) {
+  const vulkan::ImageDescription& description = image_.description();
+  const auto corner = [&](std::uint32_t level) {
+    return VkOffset3D{static_cast<std::int32_t>(std::max(description.width >> level, 1u)),
+                      static_cast<std::int32_t>(std::max(description.height >> level, 1u)), 1};
+  };
+  for (std::uint32_t level = 1; level < description.levels; ++level) {
+    VkImageBlit step{};
+    step.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level - 1, 0, description.layers};
+    step.srcOffsets[1] = corner(level - 1);
+    step.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, description.layers};
+    step.dstOffsets[1] = corner(level);
+    commands.barrier();
+    vkCmdBlitImage(commands.handle(), image_.handle(), VK_IMAGE_LAYOUT_GENERAL, image_.handle(),
+                   VK_IMAGE_LAYOUT_GENERAL, 1, &step, VK_FILTER_LINEAR);
+  }
+}
+
+void BlurredMap::bind(vulkan::Bindings& bindings) const {
+  bindings.texture("blurred_map", image_, sampling_);
+}
+
+}  // namespace penumbra::shadow_maps

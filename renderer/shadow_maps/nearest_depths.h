@@ -1,0 +1,21 @@
+#pragma once
+
+#include "renderer/shadow_maps/depth_map.h"
+
+namespace penumbra::shadow_maps {
+
+/// Least depth over squares of 2, 4, 8 .. texels of a depth map, so that a shader can bound what
+/// stands before a region in a few reads (Guennebaud, Barthe and Paulin 2006).
+class NearestDepths {
+ public:
+  /// One pass, "nearest depths".
+  void draw(PrepareContext& context, const DepthMap& depth);
+
+  /// Name for renderer/shadow_maps/nearest_depths.glsl: "nearest_depths".
+  void bind(vulkan::Bindings& bindings) const;
+
+ private:
+  vulkan::Image image_;  ///< level 0 is half the map's size
+};
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,136 @@
+#include "renderer/shadow_maps/diagnostics.glsl"
+#include "renderer/shadow_maps/filters.glsl"
+#include "renderer/shadow_maps/nearest_depths.glsl"
+
+// The light's extent as the map sees it. A blocker at distance s along the axis hides the light from a
+// receiver at distance d wherever it lies within reach(s, d) of the receiver's place, in units of
+// `right` and `up`: those are the half sizes in texels, for an extent one metre across at a reach of 1.
+struct ExtentOnMap {
+  vec2 right;
+  vec2 up;
+  bool square;  // rectangle; otherwise round
+};
+
+ExtentOnMap extent_on_map(int face_index) {
+  MapFace face = map.faces[face_index];
+  vec2 half_size = light.extent.yz;
+  bool square = int(light.extent.x) == 3;
+  if (!square) half_size = light.extent.yy;
+  if (int(light.position.w) == light_kind_directional) half_size = tan(radians(half_size));
+  // Round extents look alike from everywhere; a rectangle lies along its own axes.
+  vec3 along_right = square ? light.right.xyz : normalize(face.right.xyz);
+  vec3 along_up = square ? light.up.xyz : normalize(face.up.xyz);
+  vec2 texels = 0.5 * map.texel.x / vec2(dot(face.right.xyz, face.right.xyz), dot(face.up.xyz, face.up.xyz));
+  ExtentOnMap extent;
+  extent.right = half_size.x * texels * vec2(dot(along_right, face.right.xyz), dot(along_right, face.up.xyz));
+  extent.up = half_size.y * texels * vec2(dot(along_up, face.right.xyz), dot(along_up, face.up.xyz));
+  extent.square = square;
+  return extent;
+}
+
+// Half the penumbra's width (d - s) w / s on the receiver (van Sambeek 2007, 2.2.5), seen from the
+// light: divided by d, where a texel is one unit wide. Directional light: both without the division.
+float reach(MapPoint point, float blocker) {
+  float gap = max(point.distance - blocker, 0.0);
+  return map.faces[point.face].origin.w > 0.5 ? gap / (blocker * point.distance) : gap;
+}
+
+float texels_of(ExtentOnMap extent, float reach) { return reach * max(length(extent.right), length(extent.up)); }
+
+// Tap i of n over the extent, from -1 to 1: a spiral on the disc, a lattice on the square.
+vec2 extent_tap(ExtentOnMap extent, int i, int n, float rotation) {
+  if (!extent.square) return vogel_tap(i, n, rotation);
+  float shift = rotation / (2.0 * pi);
+  return 2.0 * fract(vec2((float(i) + 0.5) / float(n) + shift, float(i) * 0.61803399 + 1.7 * shift)) - 1.0;
+}
+
+ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
+  return ivec2(floor(point.texel + reach * (tap.x * extent.right + tap.y * extent.up)));
+}
+
+// How far casters that may block the light lie from the receiver's place: what stands in a region
+// bounds how wide the region need be, and so on until it shrinks no more.
+float reach_of_casters(MapPoint point, ExtentOnMap extent) {
+  float widest = reach(point, map.range.x);
+  for (int round = 0; round < 6; ++round) {
+    float nearest = map.range.x + nearest_depth(point, texels_of(extent, widest) + 1.0) / map.range.z;
+    float next = reach(point, nearest);
+    if (next > 0.9 * widest) break;
+    widest = next;
+  }
+  return widest;
+}
+
+// Distance of what blocks the light, mean or nearest, m along the axis; below 0: nothing does.
+float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
+  float slack = 1.0 / max(texels_of(extent, 1.0), 1e-20);  // of one texel
+  float widest = max(reach_of_casters(point, extent), slack);
+  float sum = 0.0;
+  float count = 0.0;
+  float nearest = 1e30;
+  for (int i = 0; i < parameter_search_taps; ++i) {
+    // Every other tap is drawn to the middle, by the square of its share of the area: casters close to
+    // the receiver may block only there, while others stand at the light and may block everywhere.
+    vec2 tap = extent_tap(extent, i, parameter_search_taps, rotation);
+    float away = extent.square ? max(abs(tap.x), abs(tap.y)) : length(tap);
+    float drawn = (i & 1) == 1 ? away * away * away : 1.0;
+    tap *= drawn;
+    away *= drawn;
+    ivec2 texel = texel_at(point, extent, tap, widest);
+    float stored = fetch_depth(point, texel);
+    if (receiver_depth(point, texel) <= stored) continue;
+    // A caster outside the cone from the receiver to the extent blocks nothing.
+    float distance = map.range.x + stored / map.range.z;
+    float cone = reach(point, distance) + slack;
+    if (away * widest > cone) continue;
+    // The share of the extent that this tap hides: its area, the inverse of the taps' density there,
+    // in the cone's at that distance.
+    float share = 1.0 / ((1.0 + 0.25 * pow(max(away, 1e-4), -1.5)) * cone * cone);
+    sum += share * distance;
+    count += share;
+    nearest = min(nearest, distance);
+  }
+  if (count == 0.0) return -1.0;
+  return parameter_blocker == blocker_nearest ? nearest : sum / count;
+}
+
+float calculate_shadow(ShadowQuery query) {
+  MapPoint point = locate(query, 1.0);
+  if (point.face < 0) return 1.0;
+  // A light without extent casts no penumbra.
+  if (int(light.extent.x) == 0) return mean_of_bilinear(point, 1);
+  ExtentOnMap extent = extent_on_map(point.face);
+  float rotation = tap_rotation(query.pixel);
+  float blocker = find_blocker(point, extent, rotation);
+  if (blocker < 0.0) return 1.0;
+  float size = reach(point, blocker);
+  float radius = texels_of(extent, size);
+  // Below a texel the map knows no more than its own interpolation.
+  if (radius < 1.0) return mean_of_bilinear(point, 1);
+  // The bias of a wide kernel would let light in where a wall meets the ground.
+  point = locate(query, min(radius, 2.0));
+  float lit = 0.0;
+  for (int i = 0; i < parameter_taps; ++i) {
+    vec2 tap = extent_tap(extent, i, parameter_taps, rotation);
+    lit += compare_texel(point, texel_at(point, extent, tap, size));
+  }
+  return lit / float(parameter_taps);
+}
+
+// Found by the search: the blocker's depth in the map's range, black where there is none.
+vec4 draw_diagnostic_blocker_depth(ShadowQuery query, vec2 picture) {
+  MapPoint point = locate(query, 1.0);
+  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  float blocker = find_blocker(point, extent_on_map(point.face), tap_rotation(query.pixel));
+  return vec4(vec3(blocker < 0.0 ? 0.0 : max(depth_of_distance(blocker), 0.05)), 1.0);
+}
+
+// Width of the filter, white at an eighth of the map.
+vec4 draw_diagnostic_penumbra_width(ShadowQuery query, vec2 picture) {
+  MapPoint point = locate(query, 1.0);
+  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  ExtentOnMap extent = extent_on_map(point.face);
+  float blocker = find_blocker(point, extent, tap_rotation(query.pixel));
+  float width = blocker < 0.0 ? 0.0 : 2.0 * texels_of(extent, reach(point, blocker));
+  return vec4(vec3(8.0 * width / map.texel.x), 1.0);
+}

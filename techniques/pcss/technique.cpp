@@ -1,0 +1,83 @@
+#include "renderer/shadow_maps/nearest_depths.h"
+
+namespace penumbra::techniques {
+namespace {
+
+Parameter taps_parameter(const char* name, std::int64_t count, const char* meaning) {
+  Parameter taps;
+  taps.name = name;
+  taps.type = ParameterType::integer;
+  taps.default_value = count;
+  taps.minimum = 1;
+  taps.maximum = 1024;
+  taps.scale = ParameterScale::logarithmic;
+  taps.meaning = meaning;
+  taps.variant = true;
+  return taps;
+}
+
+std::vector<Parameter> pcss_parameters() {
+  std::vector<Parameter> list = shadow_maps::map_parameters();
+  list.push_back(taps_parameter("search_taps", 32, "Texels searched for blockers, per pixel."));
+  list.push_back(taps_parameter("taps", 64,
+                                "Comparisons of the filter, per pixel where blockers were found."));
+  Parameter blocker;
+  blocker.name = "blocker";
+  blocker.type = ParameterType::choice;
+  blocker.choices = {"average", "nearest"};
+  blocker.default_value = std::string("average");
+  blocker.meaning =
+      "Whose distance sets the penumbra's width: the mean of the blockers found, or the one "
+      "nearest "
+      "to the light.";
+  blocker.variant = true;
+  list.push_back(blocker);
+  return list;
+}
+
+/// Percentage-closer soft shadows: the filter is as wide as the penumbra ought to be.
+class PercentageCloserSoftShadows : public Technique {
+ public:
+  void require(const TechniqueInput&, Requirements&) override {}
+
+  void prepare(PrepareContext& context) override {
+    // Penumbrae reach over the map's border by their width at most; how wide they are is known only
+    // in the shader. A sixteenth of the map is room for wide ones; strategy slope covers small
+    // ones.
+    const bool soft = context.light.source->extent.kind != ExtentKind::none;
+    const auto size = static_cast<double>(integer_of(context.input.parameters, "map_size"));
+    map_.draw(context, soft ? 4.0 : 1.0, soft ? size / 16.0 : 1.0);
+    nearest_.draw(context, map_);
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    map_.bind(bindings);
+    nearest_.bind(bindings);
+  }
+
+ private:
+  shadow_maps::DepthMap map_;
+  shadow_maps::NearestDepths nearest_;
+};
+
+}  // namespace
+
+TechniqueDescription describe_pcss();
+TechniqueDescription describe_pcss() {
+  TechniqueDescription description;
+  description.id = "pcss";
+  description.label = "PCSS";
+  description.title = "Percentage-closer soft shadows";
+  description.family = "map";
+  description.source = "van Sambeek 2007, 2.2.5; Fernando 2005";
+  description.parameters = pcss_parameters();
+  description.diagnostics = {
+      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      {"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
+      {"penumbra-width", "Width of the filter; white is an eighth of the map."}};
+  description.shader = "techniques/pcss/shadow.glsl";
+  description.create = [] { return std::make_unique<PercentageCloserSoftShadows>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques
