@@ -1,0 +1,81 @@
+#include "renderer/shadow_maps/blurred_map.h"
+
+namespace penumbra::techniques {
+namespace {
+
+std::vector<Parameter> vsm_parameters() {
+  std::vector<Parameter> list = shadow_maps::map_parameters();
+  for (Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(std::move(parameter));
+  Parameter precision;
+  precision.name = "precision";
+  precision.type = ParameterType::choice;
+  precision.choices = {"fp16", "fp32"};
+  precision.default_value = std::string("fp32");
+  precision.meaning = "Bits of a moment. 16 are too few for the second: shadows show bands.";
+  list.push_back(precision);
+
+  Parameter reduction;
+  reduction.name = "bleeding_reduction";
+  reduction.default_value = 0.2;
+  reduction.minimum = 0.0;
+  reduction.maximum = 0.99;
+  reduction.meaning =
+      "Light below this becomes shadow and the rest is stretched smoothly: less bleeding, darker "
+      "penumbrae. 0 leaves the bound as it is.";
+  list.push_back(reduction);
+
+  Parameter deviation;
+  deviation.name = "minimum_deviation";
+  deviation.default_value = 0.001;
+  deviation.minimum = 0.0;
+  deviation.maximum = 100.0;
+  deviation.unit = "m";
+  deviation.meaning =
+      "Depths are taken to scatter at least this much: hides rounding of the moments.";
+  list.push_back(deviation);
+  return list;
+}
+
+/// Variance shadow maps: a map of moments is filtered once, and bounds the light from above.
+class VarianceShadowMap : public Technique {
+ public:
+  void require(const TechniqueInput&, Requirements&) override {}
+
+  void prepare(PrepareContext& context) override {
+    const ParameterValues& parameters = context.input.parameters;
+    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
+    const bool half = choice_of(parameters, "precision") == "fp16";
+    moments_.draw(context, depth_, "techniques/vsm/moments.frag",
+                  half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT);
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    depth_.bind(bindings);
+    moments_.bind(bindings);
+  }
+
+ private:
+  shadow_maps::DepthMap depth_;
+  shadow_maps::BlurredMap moments_;
+};
+
+}  // namespace
+
+TechniqueDescription describe_vsm();
+TechniqueDescription describe_vsm() {
+  TechniqueDescription description;
+  description.id = "vsm";
+  description.label = "VSM";
+  description.title = "Variance shadow map";
+  description.family = "map";
+  description.source = "van Sambeek 2007, 2.2.6; Donnelly and Lauritzen 2006";
+  description.parameters = vsm_parameters();
+  description.diagnostics = {
+      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      {"moments", "Mean depth in red and ten times the deviation from it in green."}};
+  description.shader = "techniques/vsm/shadow.glsl";
+  description.create = [] { return std::make_unique<VarianceShadowMap>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques
