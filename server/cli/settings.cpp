@@ -145,7 +145,15 @@ std::vector<std::string> complete_arguments(const CLI::App& app,
   const auto named = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& text) {
     return find_command(app, text) != nullptr;
   });
-  if (named == arguments.end()) return arguments;
+  if (named == arguments.end()) {
+    const auto word = std::find_if(arguments.begin(), arguments.end(),
+                                   [](const std::string& text) { return !text.starts_with("-"); });
+    if (word == arguments.end()) return arguments;
+    std::string list;
+    for (const CLI::App* known : commands_of(app))
+      list += (list.empty() ? "" : ", ") + known->get_name();
+    throw bad_value("command", "there is no command \"" + *word + "\"; there are " + list);
+  }
   const CLI::App& command = *find_command(app, *named);
   const auto& section = file.of_command[*named];
   std::vector<std::string> added;

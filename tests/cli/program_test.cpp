@@ -60,7 +60,7 @@ TEST_F(ProgramTest, answers_wrong_usage_with_state_2_and_the_argument_at_fault) 
       {"render boxes none --supersampling 2", "1, 4, 16"},
       {"render boxes none --set nonsense", "--set takes name=value"},
       {"render boxes none --set nonsense=1", "nonsense"},
-      {"render boxes none --light nonsense=1", "lights.nonsense"},
+      {"render boxes none --light nonsense=1", "NAME.key=value"},
       {"render boxes none --out picture.bmp", ".png"},
       {"render no-such-scene none", "half-plane"},
       {"render boxes no-such-technique", "none"},
