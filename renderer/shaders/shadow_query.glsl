@@ -13,7 +13,7 @@ struct ShadowQuery {
   vec3 normal;           // geometric, unit, towards the viewer's side
   vec3 shading_normal;   // unit
   vec3 to_light;         // unit, to the light point in question
-  float light_distance;  // m to that point
+  float light_distance;  // m to that point; 1e30 when directional
   vec2 pixel;            // sample of the frame, as gl_FragCoord.xy
   int point;             // index within the batch, 0 .. points_per_batch - 1
 };
