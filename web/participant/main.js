@@ -168,7 +168,7 @@ class Course {
       } catch {
         const earlier = kept.observations ?? {};
         kept.observations = { ...earlier, load_failures: (earlier.load_failures ?? 0) + 1 };
-        await this.person.save_draft(number, kept);
+        this.person.save_draft(number, kept);
         await new Promise((again) => this.show(
           message_view(this.strings.pictures_failed, { name: this.strings.try_again, act: again })));
       }

@@ -2,7 +2,7 @@
 // device's are joined here, so that reload, back and a second tab all find the same answers.
 
 import { ApiError, get, post, uuid } from "/assets/shared/http.js";
-import { alone } from "./storage.js";
+import { alone, Drafts } from "./storage.js";
 
 /// The judgement in an answer, without what was observed beside it.
 const judgement = ({ shelves, digits, all_same, difficulty }) =>
@@ -12,6 +12,7 @@ export class Person {
   constructor(storage, outbox, study, entry) {
     Object.assign(this, { storage, outbox, study, entry });
     this.token = entry.participant;
+    this.drafts = new Drafts();
     this.path = `/api/v1/participants/${encodeURIComponent(this.token)}`;
   }
 
@@ -67,12 +68,12 @@ export class Person {
 
   /// What the page shows when it opens: the draft, else the answer given, else nothing.
   async kept(page) {
-    const [draft, answer] = [await this.storage.get(this.key("draft", page)), await this.answer_of(page)];
-    return draft ?? (answer ? { ...answer, observations: answer } : {});
+    const answer = await this.answer_of(page);
+    return this.drafts.get(this.key("draft", page)) ?? (answer ? { ...answer, observations: answer } : {});
   }
 
   save_draft(page, draft) {
-    return this.storage.set(this.key("draft", page), draft);
+    this.drafts.set(this.key("draft", page), draft);
   }
 
   /// The same judgement again is the same answer; a changed one is a new answer that replaces it.
@@ -94,7 +95,8 @@ export class Person {
   }
 
   async forget() {
-    for (const what of ["answer", "draft", "begun", "details"]) await this.storage.forget(this.key(what));
+    this.drafts.forget(this.key("draft"));
+    for (const what of ["answer", "begun", "details"]) await this.storage.forget(this.key(what));
     await this.storage.forget(`person:${this.study}`);
   }
 }

@@ -1,4 +1,4 @@
-// What must outlive this page: a key-value store and the outbox, in IndexedDB. Where a browser
+// What must outlive this page: values and the outbox in IndexedDB, drafts beside them. Where a browser
 // refuses one (some private windows), memory stands in and only a reload can lose an answer that has
 // not left yet.
 
@@ -107,6 +107,42 @@ export async function open_storage() {
     return new DatabaseStorage(await open());
   } catch {
     return new MemoryStorage();
+  }
+}
+
+/// What changes with every move. localStorage writes before it returns, where a transaction that a
+/// reload overtakes is rolled back; whoever forbids it keeps drafts until the next reload.
+export class Drafts {
+  constructor() {
+    this.memory = new Map();
+  }
+
+  get(key) {
+    let text = null;
+    try {
+      text = localStorage.getItem(key);
+    } catch {
+      // Forbidden: memory answers.
+    }
+    return text === null ? this.memory.get(key) : JSON.parse(text);
+  }
+
+  set(key, value) {
+    this.memory.set(key, value);
+    try {
+      localStorage.setItem(key, JSON.stringify(value));
+    } catch {
+      // Forbidden or full: memory has it.
+    }
+  }
+
+  forget(prefix) {
+    this.memory.clear();
+    try {
+      for (const key of Object.keys(localStorage)) if (key.startsWith(prefix)) localStorage.removeItem(key);
+    } catch {
+      // Forbidden: nothing was kept there.
+    }
   }
 }
 

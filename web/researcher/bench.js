@@ -71,7 +71,7 @@ class Bench {
     } } },
     labelled("Scene", this.scene), labelled("Technique", this.technique), labelled("Width and height, pixels", this.size),
     labelled("Samples per pixel", this.supersampling), labelled("Light samples (empty: the default)", this.light_samples),
-    this.parameters, this.go, this.state, this.problem);
+    this.go, this.state, this.problem, this.parameters);
     this.draw_parameters();
     this.element = h("div", {}, h("h1", { tabindex: "-1" }, "Bench"), h("div", { class: "bench" }, this.form, this.result));
   }
