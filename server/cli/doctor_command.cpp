@@ -14,6 +14,7 @@
 #include "server/cli/local_renders.h"
 #include "server/cli/session.h"
 #include "server/jobs/device_lock.h"
+#include "server/jobs/drawing_version.h"
 #include "techniques/registry.h"
 
 namespace penumbra::server::cli {
@@ -39,7 +40,7 @@ json libraries() {
   std::uint32_t loader = VK_API_VERSION_1_0;
   vkEnumerateInstanceVersion(&loader);
   return {{"penumbra", PENUMBRA_VERSION},
-          {"renderer", renderer_version()},
+          {"renderer", drawing_version()},
           {"vulkan_loader", vulkan_version(loader)},
           {"sqlite", sqlite3_libversion()},
           {"openssl", OpenSSL_version(OPENSSL_VERSION)},

@@ -10,6 +10,7 @@
 #include "renderer/technique.h"
 #include "scenes/library.h"
 #include "server/jobs/digest.h"
+#include "server/jobs/drawing_version.h"
 #include "server/jobs/request_scene.h"
 #include "techniques/parameter_schema.h"
 
@@ -205,7 +206,7 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, camera)).name;
   out["lights"] = checked_lights(*scene.scene, lights);
   out["device"] = context.device;
-  out["renderer"] = renderer_version();
+  out["renderer"] = drawing_version();
   identify(canonical);
   return canonical;
 }

@@ -14,6 +14,7 @@
 
 #include "renderer/error.h"
 #include "server/jobs/canonical_request.h"
+#include "server/jobs/drawing_version.h"
 #include "server/jobs/task.h"
 
 namespace penumbra::server {
@@ -112,7 +113,7 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
   write_message(
       channel,
       {{{"hello",
-         {{"renderer", renderer_version()}, {"device", device_to_json(renderer->device())}}}},
+         {{"renderer", drawing_version()}, {"device", device_to_json(renderer->device())}}}},
        {}});
 
   MessageReader reader(STDIN_FILENO);

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "renderer/error.h"
-#include "renderer/render.h"
+#include "server/jobs/drawing_version.h"
 
 extern char** environ;
 
@@ -120,7 +120,7 @@ WorkerProcess::WorkerProcess(const WorkerCommand& command) {
     const Message hello = read(after(command.start_s), {});
     if (hello.body.contains("error")) raise(hello.body);
     if (!hello.body.contains("hello")) lost("did not say hello");
-    if (hello.body["hello"].value("renderer", "") != renderer_version())
+    if (hello.body["hello"].value("renderer", "") != drawing_version())
       lost("is of another version than the server");
     device_ = hello.body["hello"].value("device", json(nullptr));
   } catch (...) {

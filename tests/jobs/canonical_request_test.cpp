@@ -4,6 +4,7 @@
 
 #include "renderer/error.h"
 #include "server/jobs/digest.h"
+#include "server/jobs/drawing_version.h"
 
 namespace penumbra::server {
 namespace {
@@ -43,7 +44,7 @@ TEST(CanonicalRequest, fills_in_every_default) {
   EXPECT_EQ(canonical.request.at("seed"), defaults.seed);
   EXPECT_EQ(canonical.request.at("camera"), canonical.scene->cameras.front().name);
   EXPECT_EQ(canonical.request.at("scene_hash").get<std::string>().size(), 32u);
-  EXPECT_EQ(canonical.request.at("renderer"), renderer_version());
+  EXPECT_EQ(canonical.request.at("renderer"), drawing_version());
   EXPECT_FALSE(canonical.request.at("parameters").empty());
   EXPECT_FALSE(canonical.measure);
 }

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <thread>
 
-#include "renderer/render.h"
+#include "server/jobs/drawing_version.h"
 #include "server/jobs/message.h"
 #include "server/jobs/task.h"
 #include "tests/stand_in_worker/behaviour.h"
@@ -61,7 +61,7 @@ int main() {
   if (std::getenv("STAND_IN_REFUSES_TO_START")) return 3;
   write_message(STDOUT_FILENO,
                 {{{"hello",
-                   {{"renderer", penumbra::renderer_version()},
+                   {{"renderer", drawing_version()},
                     {"device", {{"name", "stand-in"}, {"driver", "none"}, {"type", "cpu"}}}}}},
                  {}});
   MessageReader reader(STDIN_FILENO);
