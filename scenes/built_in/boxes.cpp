@@ -18,25 +18,30 @@ Scene make_boxes() {
                          b.look("white paint", {0.80f, 0.79f, 0.75f}, paint, 1.5, 0.06f, 40.0f),
                          b.look("ochre paint", {0.76f, 0.52f, 0.16f}, paint, 1.5, 0.06f, 40.0f)};
   const Look grey = b.look("grey ground", {0.80f, 0.80f, 0.80f}, b.texture("concrete", 2), 6.0);
-  b.ground({-34.0, -34.0}, {34.0, 34.0}, grey);
+  b.ground({-44.0, -44.0}, {44.0, 44.0}, grey);
 
-  // Ten columns by five rows of cells, each box turned and moved within its cell: none overlaps.
+  // Eight columns by seven rows of cells less six at the corners; each box is turned and moved
+  // within its cell, so that none overlaps.
   Random random(50);
-  for (int i = 0; i < 50; ++i) {
+  int count = 0;
+  for (int cell = 0; cell < 56; ++cell) {
+    const int column = cell % 8, row = cell / 8;
+    const bool corner = (column == 0 || column == 7) && (row == 0 || row == 6);
+    if (corner || cell == 1 || cell == 54) continue;
     const double width = random.range(0.7, 1.3), depth = random.range(0.7, 1.3);
-    const double height = i % 7 == 3 ? random.range(2.0, 3.1) : random.range(0.5, 1.6);
-    const double x = (i % 10 - 4.5) * 1.9 + random.range(-0.25, 0.25);
-    const double z = (i / 10 - 2.0) * 2.2 + random.range(-0.35, 0.35);
+    const double height = count % 7 == 3 ? random.range(2.0, 3.1) : random.range(0.5, 1.6);
+    const double x = (column - 3.5) * 1.95 + random.range(-0.2, 0.2);
+    const double z = (row - 3.0) * 2.05 + random.range(-0.25, 0.25);
     const Look& look = looks[random.below(6)];
     const double angle = random.range(-40.0, 40.0);
     b.place(rounded_box({-0.5 * width, 0.0, -0.5 * depth}, {0.5 * width, height, 0.5 * depth},
                         0.025, 1),
-            look, "box " + std::to_string(i + 1), move({x, 0.0, z}) * turn_y(angle), 20.0);
+            look, "box " + std::to_string(++count), move({x, 0.0, z}) * turn_y(angle), 20.0);
   }
-  b.spot("lamp", {-9.0, 24.0, 7.0}, {0.0, 0.0, 0.0}, {1.0f, 0.96f, 0.89f}, 1.15f, 40.0,
+  b.spot("lamp", {-9.0, 24.0, 7.0}, {0.0, 0.0, 0.0}, {1.0f, 0.96f, 0.89f}, 1.15f, 45.0,
          rectangle(2.4, 2.4))
-      .inner_angle = 18.0;
-  b.camera("main", {8.2, 12.6, 14.8}, {0.2, 0.0, 0.15}, 40.0);
+      .inner_angle = 24.0;
+  b.camera("main", {6.4, 14.2, 16.4}, {0.0, 0.2, -0.3}, 43.0);
   b.scene.ambient = {0.13f, 0.14f, 0.16f};
   return std::move(b.scene);
 }

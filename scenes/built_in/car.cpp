@@ -30,7 +30,7 @@ Scene make_car() {
   b.spot("right lamp", {2.7, 3.7, 1.0}, {0.0, 0.6, 0.0}, {0.86f, 0.93f, 1.0f}, 0.54f, 68.0,
          disc(0.40))
       .inner_angle = 22.0;
-  b.camera("main", {1.2, 2.7, 6.6}, {0.05, 0.80, 0.0}, 39.0);
+  b.camera("main", {1.3, 2.75, 7.0}, {0.10, 0.66, 0.0}, 39.0);
   b.scene.ambient = glm::vec3(0.11f);
   return std::move(b.scene);
 }

@@ -209,10 +209,10 @@ void add_details(Mesh& mesh, const CarLooks& looks) {
   add_bumper(mesh, looks.chrome, -1.985, 0.42);
   for (const double side : {-1.0, 1.0}) {
     add_part(mesh, sphere(1.0, 24, 14), looks.chrome,
-             move({1.775, 0.625, side * 0.53}) * turn_z(-14.0) * stretch({0.085, 0.125, 0.125}),
+             move({1.815, 0.615, side * 0.53}) * turn_z(-14.0) * stretch({0.085, 0.125, 0.125}),
              60.0);
     add_part(mesh, sphere(1.0, 24, 14), looks.lamp,
-             move({1.795, 0.622, side * 0.53}) * turn_z(-14.0) * stretch({0.085, 0.108, 0.108}),
+             move({1.838, 0.612, side * 0.53}) * turn_z(-14.0) * stretch({0.085, 0.108, 0.108}),
              60.0);
     add_part(
         mesh,
@@ -230,11 +230,13 @@ void add_details(Mesh& mesh, const CarLooks& looks) {
                          0.008, 1),
              looks.chrome);
   }
+  // The grille follows the nose, which leans back above 0.45 m.
   for (int i = 0; i < 5; ++i)
     add_part(mesh,
-             rounded_box({1.84, 0.50 + 0.034 * i, -0.36},
-                         {1.925 - 0.006 * i, 0.518 + 0.034 * i, 0.36}, 0.006, 1),
+             rounded_box({1.86, 0.49 + 0.036 * i, -0.36},
+                         {1.972 - 0.011 * i, 0.510 + 0.036 * i, 0.36}, 0.006, 1),
              i % 2 ? looks.rubber : looks.chrome);
+  add_part(mesh, box({1.90, 0.335, -0.26}, {2.056, 0.445, 0.26}), looks.lamp);
   add_part(mesh, box({-1.955, 0.50, -0.26}, {-1.90, 0.61, 0.26}), looks.lamp);
 }
 

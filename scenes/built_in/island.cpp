@@ -131,7 +131,7 @@ Scene make_island() {
 
   b.spot("sun", {-120.0, 190.0, 85.0}, {0.0, 0.0, -8.0}, {1.0f, 0.95f, 0.84f}, 1.2f, 17.5,
          disc(0.25));
-  b.camera("main", {10.0, 19.5, 28.5}, {0.0, 0.6, -0.2}, 39.0);
+  b.camera("main", {10.5, 19.5, 28.5}, {1.3, 0.6, 0.0}, 41.0);
   b.scene.ambient = {0.17f, 0.20f, 0.25f};
   b.scene.background_low = {0.62f, 0.74f, 0.86f};
   b.scene.background_high = {0.20f, 0.38f, 0.68f};

@@ -78,8 +78,9 @@ Scene make_warehouse_outside() {
                                {-5.5, 0.0, 13.0, 40.0},  {-7.2, 0.0, 12.4, 10.0}};
   for (const auto& c : crates) b.place(crate, move({c[0], c[1], c[2]}) * turn_y(c[3]));
 
-  b.spot("flood light", {2.0, 52.0, 66.0}, {0.0, 0.0, 3.0}, {1.0f, 0.95f, 0.86f}, 1.2f, 28.0,
-         disc(0.7));
+  b.spot("flood light", {2.0, 52.0, 66.0}, {0.0, 0.0, 1.0}, {1.0f, 0.95f, 0.86f}, 1.2f, 33.0,
+         disc(0.7))
+      .inner_angle = 25.0;
   b.camera("main", {40.0, 36.0, 54.0}, {1.2, 1.0, 4.6}, 31.0);
   b.scene.ambient = {0.16f, 0.18f, 0.22f};
   b.scene.background_low = {0.62f, 0.74f, 0.86f};

@@ -156,9 +156,9 @@ void add_goods(SceneBuilder& b) {
       }
   }
   // Crates on pallets and barrels on the floor.
-  const double stacks[7][4] = {{-4.2, 0.6, 12.0, 2},  {-2.7, 1.3, -8.0, 1}, {3.4, -3.2, 20.0, 2},
+  const double stacks[9][4] = {{-4.2, 0.6, 12.0, 2},  {-2.7, 1.3, -8.0, 1}, {3.4, -3.2, 20.0, 2},
                                {5.0, -2.6, -15.0, 1}, {8.6, 2.6, 30.0, 2},  {-7.6, 4.8, 5.0, 2},
-                               {10.6, -1.8, 75.0, 1}};
+                               {10.6, -1.8, 75.0, 1}, {4.6, 3.9, 28.0, 1},  {3.0, 5.6, -20.0, 0}};
   for (const auto& s : stacks) {
     const glm::dmat4 where = move({s[0], 0.0, s[1]}) * turn_y(s[2]);
     b.place(pallet, where);
@@ -168,7 +168,7 @@ void add_goods(SceneBuilder& b) {
   }
   const double drums[9][3] = {{1.0, 2.6, 0},   {1.65, 2.75, 1}, {1.25, 3.25, 0},
                               {-5.9, -0.8, 1}, {-6.6, -0.6, 0}, {12.4, 5.4, 1},
-                              {12.9, 4.8, 0},  {12.2, 4.6, 0},  {6.9, 5.9, 1}};
+                              {12.9, 4.8, 0},  {12.2, 4.6, 0},  {6.3, 2.7, 1}};
   for (const auto& d : drums)
     b.place(barrel[static_cast<int>(d[2])],
             move({d[0], 0.0, d[1]}) * turn_y(random.range(0.0, 360.0)));

@@ -55,6 +55,28 @@ TEST(Library, HasTheSurveysSixScenesFirst) {
                                         "warehouse-outside"));
 }
 
+TEST(Library, SurveyScenesHaveTheObjectsAndLightsOfTheirDescription) {
+  // van Sambeek 2007, 4.1.2
+  EXPECT_EQ(load("car")->lights.size(), 2u);
+  EXPECT_EQ(load("boxes")->instances.size(), 50u + 1u) << "50 boxes on a plane";
+  const auto disco = load("disco-box");
+  ASSERT_EQ(disco->lights.size(), 3u);
+  for (int c = 0; c < 3; ++c) {
+    const glm::vec3 color = disco->lights[static_cast<std::size_t>(c)].color;
+    EXPECT_GT(color[c], 3.0f * std::max(color[(c + 1) % 3], color[(c + 2) % 3]));
+  }
+  for (const char* id : {"boxes", "island", "warehouse-inside", "warehouse-outside"})
+    EXPECT_EQ(load(id)->lights.size(), 1u) << id;
+  for (const char* id :
+       {"car", "boxes", "disco-box", "island", "warehouse-inside", "warehouse-outside"})
+    for (const Light& light : load(id)->lights)
+      EXPECT_NE(light.extent.kind, ExtentKind::none) << id;
+  // Light and camera of the outside view are closer to each other than to what they look at.
+  const auto outside = load("warehouse-outside");
+  const glm::dvec3 light = outside->lights[0].position, camera = outside->cameras[0].position;
+  EXPECT_LT(glm::length(light - camera), std::min(glm::length(light), glm::length(camera)));
+}
+
 TEST(Library, NamesTheScenesThereAreWhenOneIsUnknown) {
   const std::string message = message_of([] { load("boxen"); }, "not_found");
   EXPECT_THAT(message, HasSubstr("boxen"));
