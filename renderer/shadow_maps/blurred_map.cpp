@@ -41,7 +41,7 @@ std::vector<Parameter> blur_parameters() {
   anisotropic.type = ParameterType::boolean;
   anisotropic.default_value = false;
   anisotropic.meaning =
-      "Read several means along the direction in which a pixel covers most, up to 16; needs mips.";
+      "Read up to 16 means along the direction in which a pixel covers most, instead of one.";
   list.push_back(anisotropic);
   return list;
 }
@@ -49,10 +49,7 @@ std::vector<Parameter> blur_parameters() {
 void BlurredMap::draw(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
                       VkFormat format) {
   const bool mips = boolean_of(context.input.parameters, "mips");
-  sampling_ = !mips ? vulkan::Sampling::linear
-              : boolean_of(context.input.parameters, "anisotropic")
-                  ? vulkan::Sampling::anisotropic
-                  : vulkan::Sampling::linear_mipmapped;
+  sampling_ = mips ? vulkan::Sampling::linear_mipmapped : vulkan::Sampling::linear;
   if (!image_) {
     vulkan::ImageDescription description = depth.image().description();
     description.format = format;

@@ -21,7 +21,9 @@ struct MapPoint {
   int face;            // view of the map; -1: outside it, lit
   vec2 texel;          // place in texels, 0 .. map size
   float distance;      // m along the view's axis
+  float texel_width;   // m at that distance
   float grant;         // m that every comparison leaves to the receiver
+  float nearest;       // m: no comparison follows the receiver's plane beyond
   vec3 plane_top;      // the receiver's plane meets the ray through texel + d at a distance of
   vec3 plane_bottom;   // dot(plane_top, (d, 1)) / dot(plane_bottom, (d, 1)) m
 };
@@ -74,7 +76,9 @@ MapPoint locate(ShadowQuery query, float kernel_radius) {
   vec4 clip = face.clip_from_world * vec4(position, 1.0);
   point.texel = (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
   point.distance = dot(position - face.origin.xyz, face.forward.xyz);
-  point.grant = map.texel.w * granted_texels(kernel_radius) * texel_size(face, point.distance);
+  point.texel_width = texel_size(face, point.distance);
+  point.grant = map.texel.w * granted_texels(kernel_radius) * point.texel_width;
+  point.nearest = 0.0;
   if (clip.w <= 0.0 || any(lessThan(point.texel, vec2(0.0))) ||
       any(greaterThan(point.texel, vec2(map.texel.x)))) {
     point.face = -1;
@@ -102,7 +106,8 @@ float plane_distance(MapPoint point, vec2 offset) {
   float bottom = dot(point.plane_bottom, vec3(offset, 1.0));
   // A lit plane has a bottom below zero; where the ray misses it there is nothing to compare with.
   if (bottom >= 0.0) return point.distance;
-  return min(top / bottom, point.distance);
+  float steep = point.distance - 100.0 * point.texel_width * length(offset);
+  return clamp(top / bottom, max(steep, point.nearest), point.distance);
 }
 
 /// Metres along the axis in the map's units.

@@ -8,14 +8,14 @@ namespace penumbra::shadow_maps {
 /// stands before a region in a few reads (Guennebaud, Barthe and Paulin 2006).
 class NearestDepths {
  public:
-  /// One pass, "nearest depths".
+  /// One pass, "nearest depths". Takes half as many bytes as the map if its size is a power of two.
   void draw(PrepareContext& context, const DepthMap& depth);
 
   /// Name for renderer/shadow_maps/nearest_depths.glsl: "nearest_depths".
   void bind(vulkan::Bindings& bindings) const;
 
  private:
-  vulkan::Image image_;  ///< level 0 is half the map's size
+  vulkan::Image image_;  ///< all levels side by side
 };
 
 }  // namespace penumbra::shadow_maps

@@ -52,11 +52,9 @@ ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
 // bounds how wide the region need be, and so on until it shrinks no more.
 float reach_of_casters(MapPoint point, ExtentOnMap extent) {
   float widest = reach(point, map.range.x);
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 4; ++round) {
     float nearest = map.range.x + nearest_depth(point, texels_of(extent, widest) + 1.0) / map.range.z;
-    float next = reach(point, nearest);
-    if (next > 0.9 * widest) break;
-    widest = next;
+    widest = min(widest, reach(point, nearest));
   }
   return widest;
 }
@@ -79,13 +77,9 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
     ivec2 texel = texel_at(point, extent, tap, widest);
     float stored = fetch_depth(point, texel);
     if (receiver_depth(point, texel) <= stored) continue;
-    // A caster outside the cone from the receiver to the extent blocks nothing.
     float distance = map.range.x + stored / map.range.z;
-    float cone = reach(point, distance) + slack;
-    if (away * widest > cone) continue;
-    // The share of the extent that this tap hides: its area, the inverse of the taps' density there,
-    // in the cone's at that distance.
-    float share = 1.0 / ((1.0 + 0.25 * pow(max(away, 1e-4), -1.5)) * cone * cone);
+    // A tap stands for an area: the inverse of the taps' density there.
+    float share = 1.0 / (1.0 + 0.25 * pow(max(away, 1e-4), -1.5));
     sum += share * distance;
     count += share;
     nearest = min(nearest, distance);
@@ -95,7 +89,7 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
 }
 
 float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, 1.0);
+  MapPoint point = locate(query, 0.5);
   if (point.face < 0) return 1.0;
   // A light without extent casts no penumbra.
   if (int(light.extent.x) == 0) return mean_of_bilinear(point, 1);
@@ -109,6 +103,9 @@ float calculate_shadow(ShadowQuery query) {
   if (radius < 1.0) return mean_of_bilinear(point, 1);
   // The bias of a wide kernel would let light in where a wall meets the ground.
   point = locate(query, min(radius, 2.0));
+  // A narrow facet's plane soon leads away from its body, through what shadows it: halfway to the
+  // blockers it is left.
+  point.nearest = 0.5 * (point.distance + blocker);
   float lit = 0.0;
   for (int i = 0; i < parameter_taps; ++i) {
     vec2 tap = extent_tap(extent, i, parameter_taps, rotation);
@@ -119,7 +116,7 @@ float calculate_shadow(ShadowQuery query) {
 
 // Found by the search: the blocker's depth in the map's range, black where there is none.
 vec4 draw_diagnostic_blocker_depth(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 1.0);
+  MapPoint point = locate(query, 0.5);
   if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
   float blocker = find_blocker(point, extent_on_map(point.face), tap_rotation(query.pixel));
   return vec4(vec3(blocker < 0.0 ? 0.0 : max(depth_of_distance(blocker), 0.05)), 1.0);
@@ -127,7 +124,7 @@ vec4 draw_diagnostic_blocker_depth(ShadowQuery query, vec2 picture) {
 
 // Width of the filter, white at an eighth of the map.
 vec4 draw_diagnostic_penumbra_width(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 1.0);
+  MapPoint point = locate(query, 0.5);
   if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
   ExtentOnMap extent = extent_on_map(point.face);
   float blocker = find_blocker(point, extent, tap_rotation(query.pixel));

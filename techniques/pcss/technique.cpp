@@ -46,7 +46,7 @@ class PercentageCloserSoftShadows : public Technique {
     // ones.
     const bool soft = context.light.source->extent.kind != ExtentKind::none;
     const auto size = static_cast<double>(integer_of(context.input.parameters, "map_size"));
-    map_.draw(context, soft ? 4.0 : 1.0, soft ? size / 16.0 : 1.0);
+    map_.draw(context, soft ? 4.0 : 0.5, soft ? size / 16.0 : 0.5);
     nearest_.draw(context, map_);
   }
 

@@ -5,7 +5,7 @@ namespace {
 
 std::vector<Parameter> vsm_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
-  for (Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(std::move(parameter));
+  for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
   Parameter precision;
   precision.name = "precision";
   precision.type = ParameterType::choice;

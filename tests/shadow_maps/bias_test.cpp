@@ -48,8 +48,8 @@ ParameterValues constant_bias(double metres) {
 TEST(BiasStrategies, too_little_constant_bias_is_acne_and_too_much_detaches_shadows) {
   const auto scene = scenes::load("boxes");
   const auto none = error_of(scene, "shadow-map", constant_bias(0.0));
-  const auto some = error_of(scene, "shadow-map", constant_bias(0.05));
-  const auto much = error_of(scene, "shadow-map", constant_bias(1.0));
+  const auto some = error_of(scene, "shadow-map", constant_bias(0.3));
+  const auto much = error_of(scene, "shadow-map", constant_bias(5.0));
   EXPECT_GT(none.false_shadow, 0.2);
   EXPECT_GT(none.false_shadow, some.false_shadow);
   EXPECT_GT(some.false_shadow, much.false_shadow);
