@@ -85,7 +85,8 @@ MapPoint locate(ShadowQuery query, float kernel_radius) {
     return point;
   }
   // Rays of the view are origin + s (forward + a right + b up), or origin + s forward + a right + b up.
-  vec2 gradient = 2.0 / map.texel.x * vec2(dot(query.normal, face.right.xyz), dot(query.normal, face.up.xyz));
+  vec2 gradient = 2.0 / map.texel.x *
+                  vec2(dot(query.normal, face.right.xyz), dot(query.normal, face.up.xyz));
   float facing = dot(query.normal, face.forward.xyz);
   if (perspective) {
     float height = dot(query.normal, position - face.origin.xyz);
@@ -106,6 +107,7 @@ float plane_distance(MapPoint point, vec2 offset) {
   float bottom = dot(point.plane_bottom, vec3(offset, 1.0));
   // A lit plane has a bottom below zero; where the ray misses it there is nothing to compare with.
   if (bottom >= 0.0) return point.distance;
+  // A plane seen edge-on is not followed to infinity.
   float steep = point.distance - 100.0 * point.texel_width * length(offset);
   return clamp(top / bottom, max(steep, point.nearest), point.distance);
 }
@@ -117,8 +119,11 @@ float depth_of_distance(float distance) { return (distance - map.range.x) * map.
 float receiver_depth(MapPoint point, ivec2 texel) {
   float distance = point.distance;
   // Maps of back faces need it where a body is thinner than its slope over a texel.
-  if (parameter_bias_strategy == bias_strategy_receiver_plane || parameter_bias_strategy == bias_strategy_back_faces)
-    distance += map.texel.w * (plane_distance(point, vec2(texel) + 0.5 - point.texel) - point.distance);
+  if (parameter_bias_strategy == bias_strategy_receiver_plane ||
+      parameter_bias_strategy == bias_strategy_back_faces) {
+    float met = plane_distance(point, vec2(texel) + 0.5 - point.texel);
+    distance += map.texel.w * (met - point.distance);
+  }
   return depth_of_distance(distance - point.grant);
 }
 

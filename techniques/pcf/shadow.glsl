@@ -12,8 +12,9 @@ float mean_of_hardware_bilinear(MapPoint point, int size) {
     for (int x = 0; x < size; ++x) {
       vec2 place = point.texel + vec2(x, y) - 0.5 * float(size - 1);
       ivec2 first = ivec2(floor(place - 0.5));
-      float depth = min(min(receiver_depth(point, first), receiver_depth(point, first + ivec2(1, 0))),
-                        min(receiver_depth(point, first + ivec2(0, 1)), receiver_depth(point, first + ivec2(1, 1))));
+      float depth = 1.0;
+      for (int corner = 0; corner < 4; ++corner)
+        depth = min(depth, receiver_depth(point, first + ivec2(corner & 1, corner >> 1)));
       lit += texture(shadow_map_compare, vec4(place / map.texel.x, float(point.face), depth));
     }
   }

@@ -14,15 +14,17 @@ struct ExtentOnMap {
 ExtentOnMap extent_on_map(int face_index) {
   MapFace face = map.faces[face_index];
   vec2 half_size = light.extent.yz;
-  bool square = int(light.extent.x) == 3;
+  bool square = int(light.extent.x) == 3;  // rectangle
   if (!square) half_size = light.extent.yy;
   if (int(light.position.w) == light_kind_directional) half_size = tan(radians(half_size));
   // Round extents look alike from everywhere; a rectangle lies along its own axes.
   vec3 along_right = square ? light.right.xyz : normalize(face.right.xyz);
   vec3 along_up = square ? light.up.xyz : normalize(face.up.xyz);
-  vec2 texels = 0.5 * map.texel.x / vec2(dot(face.right.xyz, face.right.xyz), dot(face.up.xyz, face.up.xyz));
+  vec2 texels = 0.5 * map.texel.x /
+                vec2(dot(face.right.xyz, face.right.xyz), dot(face.up.xyz, face.up.xyz));
   ExtentOnMap extent;
-  extent.right = half_size.x * texels * vec2(dot(along_right, face.right.xyz), dot(along_right, face.up.xyz));
+  extent.right = half_size.x * texels *
+                 vec2(dot(along_right, face.right.xyz), dot(along_right, face.up.xyz));
   extent.up = half_size.y * texels * vec2(dot(along_up, face.right.xyz), dot(along_up, face.up.xyz));
   extent.square = square;
   return extent;
@@ -35,13 +37,16 @@ float reach(MapPoint point, float blocker) {
   return map.faces[point.face].origin.w > 0.5 ? gap / (blocker * point.distance) : gap;
 }
 
-float texels_of(ExtentOnMap extent, float reach) { return reach * max(length(extent.right), length(extent.up)); }
+float texels_of(ExtentOnMap extent, float reach) {
+  return reach * max(length(extent.right), length(extent.up));
+}
 
 // Tap i of n over the extent, from -1 to 1: a spiral on the disc, a lattice on the square.
 vec2 extent_tap(ExtentOnMap extent, int i, int n, float rotation) {
   if (!extent.square) return vogel_tap(i, n, rotation);
   float shift = rotation / (2.0 * pi);
-  return 2.0 * fract(vec2((float(i) + 0.5) / float(n) + shift, float(i) * 0.61803399 + 1.7 * shift)) - 1.0;
+  vec2 place = vec2((float(i) + 0.5) / float(n) + shift, float(i) * 0.61803399 + 1.7 * shift);
+  return 2.0 * fract(place) - 1.0;
 }
 
 ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
