@@ -116,7 +116,9 @@ TEST(Responses, WhatIsWrittenIsReadBack) {
 
 TEST(Responses, AnAnswerBecomesOneRowPerPictureWithMidRanks) {
   const Study study = parse_study(thesis_document());
-  const PlannedPage planned{PageKind::repeat, 1, {5, 4, 3, 2, 1, 0}};
+  // The last of the study's pictures, its reference, then five others; the first one last.
+  const std::size_t last = study.pages[1].pictures.size() - 1;
+  const PlannedPage planned{PageKind::repeat, 1, {last, 4, 3, 2, 1, 0}};
   Answer answer;
   answer.shelves = {0, 0, 1, 2, 2, 2};
   answer.difficulty = 2;

@@ -108,8 +108,8 @@ TEST(Study, RendersAreListedOnceAndInTheOrderOfPages) {
   document["practice"] = {{"scene", "car"}, {"techniques", {"reference", "none"}}};
   const Study study = parse_study(document);
   const auto renders = all_renders(study);
-  // Six pages of six, and `none` of the practice page; its reference and the shown one are not new.
-  EXPECT_EQ(renders.size(), 37u);
+  // Six pages, and `none` of the practice page; its reference and the shown one are not new.
+  EXPECT_EQ(renders.size(), 6 * document["techniques"].size() + 1);
   EXPECT_EQ(renders[1]["technique"], "none");
   EXPECT_EQ(renders[2]["scene"], "car");
   EXPECT_EQ(renders[2]["technique"], "shadow-map");
