@@ -37,7 +37,7 @@ Scene make_warehouse_outside() {
   add_yard(b);
   add_hall(b);
   add_goods(b);
-  const int paint = b.texture("painted_metal", 61);
+  const int paint = b.texture("painted_metal", 54);
   const Look dark = b.look("dark metal", {0.06f, 0.07f, 0.08f}, -1, 1.0, 0.2f, 90.0f);
   const Look rubber = b.look("rubber", {0.04f, 0.04f, 0.04f});
   const Look cab = b.look("cab", {0.68f, 0.14f, 0.10f}, paint, 2.0, 0.15f, 70.0f);
@@ -48,9 +48,9 @@ Scene make_warehouse_outside() {
   const Look colors[3] = {b.look("container green", {0.16f, 0.36f, 0.28f},
                                  b.texture("corrugated", 62), 1.6, 0.06f, 30.0f),
                           b.look("container rust", {0.62f, 0.28f, 0.16f},
-                                 b.texture("corrugated", 63), 1.6, 0.06f, 30.0f),
+                                 b.texture("corrugated", 62), 1.6, 0.06f, 30.0f),
                           b.look("container blue", {0.20f, 0.36f, 0.58f},
-                                 b.texture("corrugated", 64), 1.6, 0.06f, 30.0f)};
+                                 b.texture("corrugated", 62), 1.6, 0.06f, 30.0f)};
   const double containers[6][4] = {{21.5, 0.0, 4.0, 4.0},  {21.6, 2.605, 4.2, 2.0},
                                    {24.6, 0.0, 2.0, 8.0},  {-12.5, 0.0, 17.0, 96.0},
                                    {-20.5, 0.0, 6.0, 0.0}, {-20.7, 2.605, 6.1, -3.0}};
@@ -72,7 +72,7 @@ Scene make_warehouse_outside() {
   const std::uint32_t crate =
       b.add_mesh("yard crate",
                  make_slatted_crate(
-                     b.look("yard wood", {0.95f, 0.92f, 0.86f}, b.texture("wood", 65), 1.2), 1.2));
+                     b.look("yard wood", {0.95f, 0.92f, 0.86f}, b.texture("wood", 55), 1.2), 1.2));
   const double crates[6][4] = {{6.5, 0.0, 12.2, 14.0},   {8.0, 0.0, 12.6, -8.0},
                                {7.2, 1.205, 12.4, 30.0}, {9.6, 0.0, 12.0, 5.0},
                                {-5.5, 0.0, 13.0, 40.0},  {-7.2, 0.0, 12.4, 10.0}};

@@ -117,7 +117,7 @@ void add_hall(SceneBuilder& b) {
 
 void add_goods(SceneBuilder& b) {
   const int wood = b.texture("wood", 55), carton = b.texture("cardboard", 56),
-            paint = b.texture("painted_metal", 57);
+            paint = b.texture("painted_metal", 54);
   const Look post = b.look("rack blue", {0.10f, 0.24f, 0.52f}, paint, 1.5, 0.08f, 40.0f);
   const Look board = b.look("rack boards", {0.92f, 0.88f, 0.80f}, wood, 1.4);
   const Look crate_wood = b.look("crate wood", {1.0f, 0.94f, 0.84f}, wood, 1.1);

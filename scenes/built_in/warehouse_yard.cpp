@@ -27,10 +27,10 @@ Mesh make_tree(const Look& bark, const Look& leaves, std::uint32_t seed) {
 }
 
 void add_crane(SceneBuilder& b) {
-  const Look yellow = b.look("crane yellow", {0.86f, 0.62f, 0.08f}, b.texture("painted_metal", 58),
+  const Look yellow = b.look("crane yellow", {0.86f, 0.62f, 0.08f}, b.texture("painted_metal", 54),
                              1.5, 0.1f, 40.0f);
   const Look chain = b.look("chain", {0.25f, 0.25f, 0.26f}, -1, 1.0, 0.2f, 60.0f);
-  const Look wood = b.look("load", {1.0f, 0.94f, 0.84f}, b.texture("wood", 59), 1.1);
+  const Look wood = b.look("load", {1.0f, 0.94f, 0.84f}, b.texture("wood", 55), 1.1);
   Mesh mesh;
   for (const double x : {-0.55, 0.15})
     add_part(mesh, box({x - 0.09, 4.62, -8.45}, {x + 0.09, 4.98, 8.45}), yellow);

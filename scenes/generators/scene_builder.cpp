@@ -13,7 +13,12 @@ SceneBuilder::SceneBuilder(const std::string& id, const std::string& title) {
 }
 
 int SceneBuilder::texture(const std::string& generator, std::uint32_t seed, std::uint32_t size) {
+  const std::string name = generator + " " + std::to_string(seed);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    if (scene.textures[i].name == name && scene.textures[i].width == size)
+      return static_cast<int>(i);
   scene.textures.push_back(generate_texture(generator, size, seed));
+  scene.textures.back().name = name;
   return static_cast<int>(scene.textures.size()) - 1;
 }
 

@@ -18,7 +18,8 @@ class SceneBuilder {
  public:
   SceneBuilder(const std::string& id, const std::string& title);
 
-  /// A texture of scenes/generators/textures.h, 512 texels wide; its index.
+  /// A texture of scenes/generators/textures.h, 512 texels wide; its index. Equal ones are
+  /// shared.
   int texture(const std::string& generator, std::uint32_t seed = 1, std::uint32_t size = 512);
   Look look(const std::string& name, const glm::vec3& color, int texture = -1, double tile = 1.0,
             float specular = 0.04f, float shininess = 32.0f);

@@ -29,7 +29,7 @@ void QueuedRenderService::work() {
     if (!worker || !worker->alive()) {
       worker.reset();
       worker = hire(lock);
-      if (!worker) continue;
+      continue;  // hiring let go of the lock: the end may have come meanwhile
     }
     std::shared_ptr<Job> job = queue_.take();
     if (!job) {

@@ -92,6 +92,15 @@ TEST_F(RenderServiceTest, knows_its_renders_after_a_restart) {
   EXPECT_EQ(log().size(), 1u);
 }
 
+TEST_F(RenderServiceTest, ends_while_its_workers_are_still_starting) {
+  options.workers = 2;
+  for (int i = 0; i < 50; ++i) {
+    start();
+    std::this_thread::sleep_for(std::chrono::microseconds(i * 100));
+    service.reset();
+  }
+}
+
 TEST_F(RenderServiceTest, draws_once_for_two_hundred_who_ask_for_the_same) {
   options.workers = 2;
   start();
