@@ -18,7 +18,7 @@ Scene make_warehouse_inside() {
   b.place(b.add_mesh("hand truck", make_hand_truck(red, rubber)),
           move({-0.9, 0.0, 3.6}) * turn_y(-40.0));
   add_crane(b);
-  b.spot("hall lamp", {2.6, 6.3, 2.4}, {0.2, 0.0, -0.4}, {1.0f, 0.93f, 0.80f}, 1.15f, 74.0,
+  b.spot("hall lamp", {6.2, 6.3, 1.6}, {1.6, 0.0, -0.4}, {1.0f, 0.93f, 0.80f}, 1.15f, 74.0,
          rectangle(0.9, 0.9));
   b.camera("main", {10.2, 3.3, 7.6}, {-2.6, 1.5, -2.4}, 52.0);
   b.scene.ambient = {0.15f, 0.16f, 0.18f};
