@@ -40,6 +40,9 @@ std::string parameter_declarations(const std::vector<Parameter>& declared,
                 << real_of(values, parameter.name) << ");\n";
     } else {
       constants << "const int " << name << " = " << integer_value(parameter, values) << ";\n";
+      if (parameter.type == ParameterType::choice)
+        constants << "#define variant_" << identifier(parameter.name) << '_'
+                  << identifier(choice_of(values, parameter.name)) << '\n';
     }
   }
   std::string text = constants.str();
