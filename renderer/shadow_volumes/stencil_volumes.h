@@ -23,6 +23,12 @@ struct VolumeOptions {
   /// Leave out casters that provably cannot shadow anything visible, and end volumes behind
   /// everything that is.
   bool clamp = false;
+  /// Decide by the sides' own planes, not by the rasteriser's depths, whether they are crossed
+  /// behind the surface, as penumbra wedges decide it. Only for Counting::behind.
+  bool exact_sides = false;
+  /// Of the light, where not only its centre throws the shadows that clamping must keep: m, or the
+  /// tangent of the angle when directional.
+  double light_radius = 0.0;
 };
 
 /// Shadow volumes from the centre of a light, counted in the geometry buffer's stencil: 0 where the

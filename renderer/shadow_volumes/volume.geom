@@ -1,32 +1,31 @@
-// Shadow volume of a triangle with adjacency: caps at the triangle and at the shadow's end, and a
-// side along every silhouette edge. Of closed meshes the triangles turned AWAY from the light are
-// extruded: they have the same silhouette as the lit ones, and no cap then lies in a lit surface.
-// Of open meshes every triangle is, turned towards the light first, so that sheets cast shadows
-// whichever way they look; an edge between a triangle that had to be turned and one that had not is
-// an edge of both. Following Bergeron 1986 and Kim et al. 2008, volumes are closed whatever the mesh.
+// Shadow volume of a triangle with adjacency: caps at the triangle and at the shadow's end, and a side
+// along every silhouette edge.
 //
-// Defined by the preamble: WITH_CAPS for counting on depth fail; EVERY_EDGE for plain triangles, of
-// which the lit ones throw three sides each (van Sambeek 2007, 3.2.4, brute force).
-#include "renderer/shadow_volumes/facing.glsl"
+// Defined by the preamble: WITH_CAPS for counting on depth fail; CAPS_ONLY and SIDES_ONLY to draw the
+// two apart; EDGES_ALONG to hand the edge of a side to the fragment stage.
+#include "renderer/shadow_volumes/silhouette.glsl"
 
-#ifdef EVERY_EDGE
-layout(triangles) in;
-const int stride = 1;
-#else
-layout(triangles_adjacency) in;
-const int stride = 2;
-#endif
 layout(triangle_strip, max_vertices = 24) out;
 
-layout(location = 0) in vec3 world_position[];
+#ifdef EDGES_ALONG
+layout(location = 0) flat out vec3 edge_start;
+layout(location = 1) flat out vec3 edge_end;
+vec3 edge[2];
+#endif
+
+void emit_corner(vec4 corner) {
+  gl_Position = corner;
+#ifdef EDGES_ALONG
+  edge_start = edge[0];
+  edge_end = edge[1];
+#endif
+  EmitVertex();
+}
 
 void emit(vec4 a, vec4 b, vec4 c) {
-  gl_Position = a;
-  EmitVertex();
-  gl_Position = b;
-  EmitVertex();
-  gl_Position = c;
-  EmitVertex();
+  emit_corner(a);
+  emit_corner(b);
+  emit_corner(c);
   EndPrimitive();
 }
 
@@ -36,6 +35,10 @@ void emit(vec4 a, vec4 b, vec4 c) {
 void emit_side(int p, int q, vec4 p_end, vec4 q_end) {
   vec4 p_clip = gl_in[p].gl_Position;
   vec4 q_clip = gl_in[q].gl_Position;
+#ifdef EDGES_ALONG
+  edge[0] = world_position[p];
+  edge[1] = world_position[q];
+#endif
   if (is_before(world_position[q], world_position[p])) {
     emit(q_clip, p_clip, p_end);
     emit(q_clip, p_end, q_end);
@@ -46,17 +49,8 @@ void emit_side(int p, int q, vec4 p_end, vec4 q_end) {
 }
 
 void main() {
-  vec3 a = world_position[0];
-  vec3 b = world_position[stride];
-  vec3 c = world_position[2 * stride];
-  if (a == b || b == c || c == a) return;
-  bool lit = is_lit(a, b, c);
-#ifdef EVERY_EDGE
-  if (!lit) return;
-#else
-  if (lit && volume.every_triangle == 0u) return;
-#endif
-
+  bool lit;
+  if (!throws_volume(lit)) return;
   vec4 end[3];
   for (int k = 0; k < 3; ++k)
     end[k] = frame.clip_from_world * end_of_shadow(world_position[k * stride]);
@@ -73,21 +67,10 @@ void main() {
     emit(end[0], end[1], end[2]);
   }
 #endif
+#ifndef CAPS_ONLY
   for (int k = 0; k < 3; ++k) {
-    int start = k * stride;
-    int stop = (k + 1) % 3 * stride;
-    // Seen from the light, the edge runs the way that it is wound only where the triangle is lit.
-    int p = lit ? start : stop;
-    int q = lit ? stop : start;
-#ifdef EVERY_EDGE
-    bool silhouette = true;
-#else
-    // An open edge names one of its own corners as neighbour. A neighbour that continues the surface
-    // as the light sees it has the edge from q to p.
-    vec3 other = world_position[start + 1];
-    bool silhouette = other == world_position[start] || other == world_position[stop] ||
-                      !is_lit(world_position[q], world_position[p], other);
-#endif
-    if (silhouette) emit_side(p, q, end[p / stride], end[q / stride]);
+    int p, q;
+    if (is_silhouette(k, lit, p, q)) emit_side(p, q, end[p / stride], end[q / stride]);
   }
+#endif
 }

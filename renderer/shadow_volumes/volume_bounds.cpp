@@ -22,7 +22,8 @@ bool outside_cone(const WorldLight& light, const glm::dvec3& center, double radi
 
 }  // namespace
 
-VolumeBounds::VolumeBounds(const PrepareContext& context) : light_(context.light) {
+VolumeBounds::VolumeBounds(const PrepareContext& context, double light_radius)
+    : light_(context.light), light_radius_(light_radius) {
   const bool directional = light_.kind == LightKind::directional;
   const glm::dvec4 light(directional ? -light_.direction : light_.position,
                          directional ? 0.0 : 1.0);
@@ -30,7 +31,8 @@ VolumeBounds::VolumeBounds(const PrepareContext& context) : light_(context.light
   const glm::dmat4 rows = glm::transpose(context.camera.clip_from_world);
   for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
                                   rows[3] - rows[1], rows[3] - rows[2]})
-    if (glm::dot(plane, light) >= 0.0) planes_.push_back(plane);
+    if (glm::dot(plane, light) >= light_radius * glm::length(glm::dvec3(plane)))
+      planes_.push_back(plane);
   const glm::mat4 clip(context.camera.clip_from_world);
   for (const DrawRange& range : context.scene.ranges())
     if (may_touch(clip, range.low, range.high)) {
@@ -49,7 +51,9 @@ bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const
   }
   if (light_.kind == LightKind::directional) return true;
   const glm::dvec3 center = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
-  const double radius = 0.5 * glm::length(glm::dvec3(high) - glm::dvec3(low));
+  // What hides a point of the light from a receiver is no farther than its radius from what hides
+  // the centre.
+  const double radius = 0.5 * glm::length(glm::dvec3(high) - glm::dvec3(low)) + light_radius_;
   if (light_.kind == LightKind::spot && outside_cone(light_, center, radius)) return false;
   const double range = light_.source->range;
   return range <= 0.0 || glm::length(center - light_.position) - radius <= range;

@@ -9,7 +9,8 @@ namespace penumbra::shadow_volumes {
 /// What bounds the shadows that a camera can see of a light.
 class VolumeBounds {
  public:
-  explicit VolumeBounds(const PrepareContext& context);
+  /// `light_radius` of the sphere around the light, m; tangent of the angle when directional.
+  VolumeBounds(const PrepareContext& context, double light_radius);
 
   /// False only where nothing within the box can lie between the light and a visible surface that
   /// it lights: the box lies outside the spot's cone or range, or outside a side plane of the view
@@ -23,6 +24,7 @@ class VolumeBounds {
 
  private:
   const WorldLight& light_;
+  double light_radius_;
   std::vector<glm::dvec4> planes_;  ///< of the view, pointing inwards, with the light inside
   Bounds receivers_;                ///< box around all parts of the scene in view
 };

@@ -1,0 +1,63 @@
+#include "renderer/shadow_volumes/volume_draws.h"
+
+#include "renderer/shadow_volumes/volume_bounds.h"
+
+namespace penumbra::shadow_volumes {
+
+void VolumeDraws::record(vulkan::Commands& commands, const GpuScene& scene) const {
+  const VkBuffer buffer = scene.position_buffer().handle();
+  const VkDeviceSize offset = 0;
+  vkCmdBindVertexBuffers(commands.handle(), 0, 1, &buffer, &offset);
+  vkCmdBindIndexBuffer(commands.handle(), indices->handle(), 0, VK_INDEX_TYPE_UINT32);
+  for (const Draw& draw : draws) {
+    commands.constants(draw.constants);
+    vkCmdDrawIndexed(commands.handle(), draw.index_count, 1, draw.first_index, 0, 0);
+  }
+}
+
+VolumeDraws list_volume_draws(const PrepareContext& context, bool every_edge, bool clamp,
+                              double light_radius) {
+  const VolumeBounds bounds(context, light_radius);
+  const float reach = 1e4f * glm::length(context.scene.high() - context.scene.low());
+  VolumeDraws list;
+  list.indices = every_edge ? &context.scene.index_buffer() : &context.adjacency->indices;
+  const auto add = [&](const auto& part, bool every_triangle) {
+    if (!part.casts_shadow) return;
+    VolumeDraws::Draw draw{
+        part.first_index, part.index_count, {glm::vec4(0.0f), reach, every_triangle ? 1u : 0u}};
+    if (clamp) {
+      if (!bounds.may_shadow(part.low, part.high)) return;
+      draw.constants.end_plane = bounds.end_plane(part.low, part.high).value_or(glm::vec4(0.0f));
+    }
+    if (!list.draws.empty()) {
+      VolumeDraws::Draw& last = list.draws.back();
+      if (last.first_index + last.index_count == draw.first_index &&
+          last.constants.every_triangle == draw.constants.every_triangle &&
+          last.constants.end_plane == draw.constants.end_plane) {
+        last.index_count += draw.index_count;
+        return;
+      }
+    }
+    list.draws.push_back(draw);
+  };
+  if (every_edge)
+    for (const DrawRange& range : context.scene.ranges()) add(range, false);
+  else
+    for (const AdjacencyGroup& group : context.adjacency->host.groups) add(group, !group.closed);
+  return list;
+}
+
+vulkan::ProgramSource volume_program(const std::string& geometry_shader, bool every_edge) {
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_volumes/volume.vert"},
+                   {VK_SHADER_STAGE_GEOMETRY_BIT, geometry_shader}};
+  if (every_edge) source.preamble = "#define EVERY_EDGE\n";
+  return source;
+}
+
+VkPrimitiveTopology volume_topology(bool every_edge) {
+  return every_edge ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST
+                    : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY;
+}
+
+}  // namespace penumbra::shadow_volumes

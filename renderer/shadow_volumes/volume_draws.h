@@ -1,0 +1,39 @@
+#pragma once
+
+#include "renderer/frame/prepare_context.h"
+
+namespace penumbra::shadow_volumes {
+
+/// VolumeBlock of facing.glsl.
+struct VolumeConstants {
+  glm::vec4 end_plane{0.0f};
+  float reach = 0.0f;
+  std::uint32_t every_triangle = 0;
+};
+
+/// The casters whose volumes are to be drawn, in as few draws as may be.
+struct VolumeDraws {
+  struct Draw {
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;
+    VolumeConstants constants;
+  };
+  std::vector<Draw> draws;
+  const vulkan::Buffer* indices = nullptr;
+
+  /// Binds vertices and indices and draws all; a pipeline must be bound.
+  void record(vulkan::Commands& commands, const GpuScene& scene) const;
+};
+
+/// `every_edge`: plain triangles instead of ones with adjacency. `clamp`: casters that cannot
+/// shadow anything visible are left out, and volumes end behind everything visible. `light_radius`:
+/// of the sphere around the light from which shadows are thrown, m (tangent of the angle when
+/// directional).
+VolumeDraws list_volume_draws(const PrepareContext& context, bool every_edge, bool clamp,
+                              double light_radius);
+
+/// Program stages and topology that all volumes begin with.
+vulkan::ProgramSource volume_program(const std::string& geometry_shader, bool every_edge);
+VkPrimitiveTopology volume_topology(bool every_edge);
+
+}  // namespace penumbra::shadow_volumes
