@@ -23,6 +23,15 @@ struct RenderLimits {
   static constexpr std::array<std::uint32_t, 3> supersampling{1, 4, 16};  ///< samples per pixel
 };
 
+/// Rules that drop what a picture does not need (renderer/scene/plan.h). The picture is the same with
+/// and without each; they are here so that what each saves can be measured.
+struct PlanRules {
+  bool lights = true;    ///< no light that reaches nothing visible
+  bool surfaces = true;  ///< no surface that the camera cannot see
+  bool casters = true;   ///< no caster that can shadow nothing visible
+  bool textures = true;  ///< no texture that nothing drawn reads
+};
+
 /// One picture. The result is a pure function of this, the device and the version of the renderer.
 struct RenderRequest {
   std::shared_ptr<const Scene> scene;
@@ -38,6 +47,7 @@ struct RenderRequest {
   bool linear = false;                   ///< also return linear light before encoding
   std::string diagnostic;                ///< name of a diagnostic picture of the technique, or empty
   std::uint32_t frames = 1;              ///< counted frames; above 1 one uncounted frame goes first
+  PlanRules rules;
 };
 
 /// Device time and pipeline statistics of one pass; counts are of one frame.

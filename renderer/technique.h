@@ -29,8 +29,20 @@ struct TechniqueInput {
   std::uint64_t seed;
 };
 
+/// Which instances may change what a technique answers for the surfaces that are seen.
+enum class CasterUse {
+  none,  ///< none at all
+  beam,  ///< those between light and surface: the answer is exact for every point
+  cone,  ///< those in the light's cone and around it: neighbouring directions are mixed
+  all    ///< every one, wherever it is
+};
+
+/// Filters of a spot light's map read no further than this many times the cone's width.
+constexpr double widest_filtered_cone = 2.0;
+
 /// What a technique needs for one light; the plan allocates this and nothing else.
 struct Requirements {
+  CasterUse casters = CasterUse::cone;
   bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
   bool adjacency = false;               ///< index buffer of triangles with adjacency
   bool acceleration_structure = false;  ///< bounding volume hierarchy over the casters

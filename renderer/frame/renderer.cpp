@@ -13,6 +13,7 @@
 #include "renderer/frame/scene_pass.h"
 #include "renderer/reference/intersector.h"
 #include "renderer/render.h"
+#include "renderer/scene/plan.h"
 
 namespace penumbra {
 
@@ -72,16 +73,34 @@ struct Renderer::State {
     library.add(embedded_renderer_shaders());
   }
 
-  const GpuScene& upload(const std::shared_ptr<const Scene>& scene) {
-    for (auto entry = scenes.begin(); entry != scenes.end(); ++entry) {
-      if ((*entry)->shared() != scene) continue;
-      scenes.splice(scenes.begin(), scenes, entry);
-      return *scenes.front();
-    }
+  /// The most recently used entry that `matches`, or a new one in place of the oldest.
+  template <class Entry, class Matches, class Make>
+  static Entry& recent(std::list<Entry>& list, const Matches& matches, const Make& make) {
     constexpr std::size_t kept = 4;
-    if (scenes.size() == kept) scenes.pop_back();
-    scenes.push_front(std::make_unique<GpuScene>(device, scene));
-    return *scenes.front();
+    const auto found = std::find_if(list.begin(), list.end(), matches);
+    if (found != list.end()) {
+      list.splice(list.begin(), list, found);
+    } else {
+      if (list.size() == kept) list.pop_back();
+      list.push_front(make());
+    }
+    return list.front();
+  }
+
+  const std::vector<Bounds>& boxes_of(const std::shared_ptr<const Scene>& scene) {
+    return recent(
+               boxes, [&](const Boxes& entry) { return entry.scene == scene; },
+               [&] {
+                 return Boxes{scene, instance_boxes(*scene)};
+               })
+        .boxes;
+  }
+
+  const GpuScene& upload(const std::shared_ptr<const Scene>& scene, const Plan& plan) {
+    return *recent(
+        scenes,
+        [&](const auto& entry) { return entry->serves(scene, plan.instances, plan.textures); },
+        [&] { return std::make_unique<GpuScene>(device, scene, plan.instances, plan.textures); });
   }
 
   vulkan::Device device;
@@ -91,7 +110,13 @@ struct Renderer::State {
   vulkan::Recorder recorder;
   vulkan::ConstantArena constants;
   vulkan::Buffer faults;
-  std::list<std::unique_ptr<GpuScene>> scenes;  ///< most recently used first
+
+  struct Boxes {
+    std::shared_ptr<const Scene> scene;
+    std::vector<Bounds> boxes;
+  };
+  std::list<Boxes> boxes;  ///< most recently used first, and so are the scenes
+  std::list<std::unique_ptr<GpuScene>> scenes;
 };
 
 namespace {
@@ -117,11 +142,17 @@ class FrameRun {
   vulkan::Image make_target(const char* name, VkFormat format, std::uint32_t width,
                             std::uint32_t height, std::uint32_t layers = 1);
   void read_results(RenderResult& result);
+  /// The first that reaches anything visible, or the number of lights.
+  std::size_t first_light() const {
+    return static_cast<std::size_t>(std::find(plan_.lights.begin(), plan_.lights.end(), true) -
+                                    plan_.lights.begin());
+  }
   FaultCounts fault_counts() const;
   void add_shared_memory(vulkan::MemoryLedger& memory) const;
 
   Renderer::State& state_;
   const RenderRequest& request_;
+  Plan plan_;
   const std::function<void(double)>& progress_;
   Clock::time_point start_ = Clock::now();
   FrameSetup setup_;
@@ -139,10 +170,11 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
                    const ParameterValues& parameters, const std::function<void(double)>& progress)
     : state_(state),
       request_(request),
+      plan_(make_plan(request, parameters, state.boxes_of(request.scene))),
       progress_(progress),
       setup_{request,
              parameters,
-             state.upload(request.scene),
+             state.upload(request.scene, plan_),
              request.scene->cameras[find_camera(*request.scene, request.camera)],
              {},
              1,
@@ -159,10 +191,15 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
   setup_.declarations = parameter_declarations(request.technique->parameters, parameters);
 
   bool stencil = false;
-  for (const Light& light : request.scene->lights) {
-    lights_.push_back(std::make_unique<LightPass>(setup_, light));
+  for (std::size_t i = 0; i < plan_.lights.size(); ++i) {
+    lights_.push_back(nullptr);
+    if (!plan_.lights[i]) continue;
+    lights_.back() = std::make_unique<LightPass>(setup_, request.scene->lights[i]);
     stencil = stencil || lights_.back()->needs().stencil;
   }
+  if (!request.diagnostic.empty() && first_light() == lights_.size())
+    throw unsupported("no light reaches what the camera sees: there is nothing to show",
+                      "diagnostic");
   geometry_ =
       make_geometry_buffer(state.device, targets_ledger_, setup_.width, setup_.height, stencil);
   picture_ = make_target("picture", picture_format, request.width, request.height);
@@ -229,6 +266,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
                   glm::mat4(setup_.matrices.clip_from_world));
   });
   for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    if (!lights_[i]) continue;
     const LightPass::Frame frame{state_.device,
                                  state_.pipelines,
                                  state_.library,
@@ -245,7 +283,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
         progress_((frame_ + (i + share) / static_cast<double>(lights_.size())) / frames_total_);
     });
     if (request_.visibility) resolve_visibility(bindings, i);
-    if (!request_.diagnostic.empty() && i == 0)
+    if (!request_.diagnostic.empty() && i == first_light())
       lights_[i]->draw_diagnostic(frame, request_.diagnostic, diagnostic_);
   }
   resolve(bindings);
@@ -330,7 +368,9 @@ void FrameRun::read_results(RenderResult& result) {
   if (request_.visibility && lights > 0) {
     result.visibility = ImageF(request_.width, request_.height, lights);
     result.judged = result.visibility;
+    std::fill(result.visibility.pixels.begin(), result.visibility.pixels.end(), 1.0f);
     for (std::uint32_t i = 0; i < lights; ++i) {
+      if (!lights_[i]) continue;  // reaches no pixel: visible where not judged, judged nowhere
       const ImageF pair = read_float(state_.device, visibility_, 2, i);
       for (std::size_t p = 0; p < pair.pixel_count(); ++p) {
         result.visibility.pixels[p * lights + i] = pair.pixels[2 * p];
@@ -342,7 +382,9 @@ void FrameRun::read_results(RenderResult& result) {
   result.non_finite_pixels = fault_counts().non_finite_pixels;
   vulkan::MemoryLedger memory;
   for (const auto& light : lights_)
-    for (const ResourceCost& resource : light->memory()) memory.add(resource.name, resource.bytes);
+    if (light)
+      for (const ResourceCost& resource : light->memory())
+        memory.add(resource.name, resource.bytes);
   add_shared_memory(memory);
   result.cost.technique_memory = memory.entries;
   std::sort(notes_.begin(), notes_.end());
@@ -359,6 +401,7 @@ void FrameRun::add_shared_memory(vulkan::MemoryLedger& memory) const {
   bool adjacency = false;
   bool acceleration = false;
   for (const auto& light : lights_) {
+    if (!light) continue;
     stencil = stencil || light->needs().stencil;
     adjacency = adjacency || light->needs().adjacency;
     acceleration = acceleration || light->needs().acceleration_structure;

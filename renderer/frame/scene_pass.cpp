@@ -72,7 +72,7 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
 
   const auto& ranges = scene.ranges();
   const auto visible = [&](const DrawRange& range) {
-    return may_touch(clip_from_world, range.low, range.high);
+    return range.visible && may_touch(clip_from_world, range.low, range.high);
   };
   for (std::size_t i = 0; i < ranges.size();) {
     const DrawRange& first = ranges[i];

@@ -79,11 +79,17 @@ vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledge
   return image;
 }
 
-GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene)
-    : scene_(std::move(scene)) {
+GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
+                   std::vector<InstanceUse> uses, std::vector<bool> textures)
+    : scene_(std::move(scene)), uses_(std::move(uses)), needed_textures_(std::move(textures)) {
+  // Of the whole scene: what the plan leaves out must not move a single bit of the rest.
   const Bounds bounds = world_bounds(*scene_);
   // A whole number of metres keeps built-in coordinates exact after the move.
-  if (!bounds.empty()) origin_ = glm::round(bounds.center());
+  if (!bounds.empty()) {
+    origin_ = glm::round(bounds.center());
+    low_ = to_world(bounds.low);
+    high_ = to_world(bounds.high);
+  }
   flatten();
   constexpr VkBufferUsageFlags vertex =
       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -107,6 +113,7 @@ void GpuScene::flatten() {
   for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
     const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
     first_vertex.push_back(static_cast<std::uint32_t>(vertex_count));
+    if (!used(i)) continue;
     vertex_count += mesh.positions.size();
     for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
       parts.push_back({i, p, mesh.primitives[p].material});
@@ -115,7 +122,9 @@ void GpuScene::flatten() {
   position_list_.reserve(vertex_count);
   surface_list_.resize(vertex_count * sizeof(SurfaceVertex));
   auto* surfaces = reinterpret_cast<SurfaceVertex*>(surface_list_.data());
-  for (const Instance& instance : scene_->instances) {
+  for (std::size_t i = 0; i < scene_->instances.size(); ++i) {
+    if (!used(i)) continue;
+    const Instance& instance = scene_->instances[i];
     const Mesh& mesh = scene_->meshes[instance.mesh];
     glm::dmat4 world_from_object = instance.world_from_object;
     world_from_object[3] -= glm::dvec4(origin_, 0.0);
@@ -144,7 +153,8 @@ void GpuScene::flatten() {
     range.index_count = primitive.index_count;
     range.material = part.material;
     range.instance = part.instance;
-    range.casts_shadow = instance.casts_shadow;
+    range.visible = uses_[part.instance].visible;
+    range.casts_shadow = uses_[part.instance].casts;
     range.double_sided = material.double_sided;
     range.masked = material.alpha_mode == AlphaMode::mask;
     range.low = glm::vec3(std::numeric_limits<float>::max());
@@ -161,13 +171,6 @@ void GpuScene::flatten() {
     }
     ranges_.push_back(range);
   }
-  if (ranges_.empty()) return;
-  low_ = ranges_.front().low;
-  high_ = ranges_.front().high;
-  for (const DrawRange& range : ranges_) {
-    low_ = glm::min(low_, range.low);
-    high_ = glm::max(high_, range.high);
-  }
 }
 
 void GpuScene::upload_materials(vulkan::Device& device) {
@@ -183,14 +186,17 @@ void GpuScene::upload_materials(vulkan::Device& device) {
   }
   materials_ = upload(device, ledger_, "materials", list.data(), list.size() * sizeof(list[0]),
                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  for (const Texture& texture : scene_->textures)
-    textures_.push_back(upload_texture(device, ledger_, texture));
+  for (std::size_t i = 0; i < scene_->textures.size(); ++i)
+    textures_.push_back(needed_textures_[i] ? upload_texture(device, ledger_, scene_->textures[i])
+                                            : vulkan::Image());
   textures_.push_back(upload_texture(device, ledger_, {"white", 1, 1, {255, 255, 255, 255}}));
 }
 
 const vulkan::Image& GpuScene::texture_of(std::uint32_t material) const {
   const int texture = scene_->materials[material].texture;
-  return texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : textures_.back();
+  // A caster without holes is drawn without its texture.
+  if (texture < 0 || !textures_[static_cast<std::size_t>(texture)]) return textures_.back();
+  return textures_[static_cast<std::size_t>(texture)];
 }
 
 const SceneAdjacency& GpuScene::adjacency(vulkan::Device& device) const {

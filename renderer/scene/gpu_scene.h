@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/scene/adjacency.h"
+#include "renderer/scene/plan.h"
 #include "renderer/scene/scene.h"
 #include "renderer/vulkan/commands.h"
 
@@ -20,7 +21,8 @@ struct DrawRange {
   std::uint32_t instance = 0;
   glm::vec3 low{0.0f};  ///< box, world
   glm::vec3 high{0.0f};
-  bool casts_shadow = true;
+  bool visible = true;       ///< as the plan has it
+  bool casts_shadow = true;  ///< as the plan has it
   bool double_sided = false;
   bool masked = false;
 };
@@ -30,15 +32,23 @@ struct DrawRange {
 /// that rasteriser, silhouettes and ray intersection share the very same float positions.
 class GpuScene {
  public:
-  GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene);
+  /// Uploads what is used: instances that are visible or cast, textures whose flag is set.
+  GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
+           std::vector<InstanceUse> uses, std::vector<bool> textures);
 
   const Scene& scene() const { return *scene_; }
-  const std::shared_ptr<const Scene>& shared() const { return scene_; }
+  /// Whether this is what such a plan needs, no more and no less.
+  bool serves(const std::shared_ptr<const Scene>& scene, const std::vector<InstanceUse>& uses,
+              const std::vector<bool>& textures) const {
+    return scene_ == scene && uses_ == uses && needed_textures_ == textures;
+  }
+  /// What lies on the device, by name.
+  const std::vector<ResourceCost>& memory() const { return ledger_.entries; }
   glm::dvec3 origin() const { return origin_; }
   glm::vec3 to_world(const glm::dvec3& scene_point) const {
     return glm::vec3(scene_point - origin_);
   }
-  glm::vec3 low() const { return low_; }  ///< box around everything, world
+  glm::vec3 low() const { return low_; }  ///< box around the whole scene, used or not, world
   glm::vec3 high() const { return high_; }
 
   const std::vector<glm::vec3>& positions() const { return position_list_; }
@@ -67,9 +77,12 @@ class GpuScene {
 
  private:
   void flatten();
+  bool used(std::size_t instance) const { return uses_[instance].visible || uses_[instance].casts; }
   void upload_materials(vulkan::Device& device);
 
   std::shared_ptr<const Scene> scene_;
+  std::vector<InstanceUse> uses_;
+  std::vector<bool> needed_textures_;
   glm::dvec3 origin_{0.0};
   glm::vec3 low_{0.0f};
   glm::vec3 high_{0.0f};
@@ -79,7 +92,7 @@ class GpuScene {
   std::vector<std::byte> surface_list_;  ///< freed after upload
   vulkan::MemoryLedger ledger_;
   vulkan::Buffer positions_, surfaces_, indices_, materials_;
-  std::vector<vulkan::Image> textures_;  ///< one per scene texture, then white
+  std::vector<vulkan::Image> textures_;  ///< one per scene texture, empty where unused, then white
   mutable std::map<std::type_index, std::shared_ptr<const void>> derived_;
   mutable std::unique_ptr<SceneAdjacency> adjacency_;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/scene/convex_clip.h"
+
 namespace penumbra::shadow_maps {
 namespace {
 
@@ -46,49 +48,20 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
   return face;
 }
 
-/// The part of a convex polygon where `side` is not negative (Sutherland and Hodgman 1974).
-std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const glm::dvec4& side) {
-  std::vector<glm::dvec3> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3& a = polygon[i];
-    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
-    const double inside_a = glm::dot(side, glm::dvec4(a, 1.0));
-    const double inside_b = glm::dot(side, glm::dvec4(b, 1.0));
-    if (inside_a >= 0.0) kept.push_back(a);
-    if ((inside_a < 0.0) != (inside_b < 0.0))
-      kept.push_back(glm::mix(a, b, inside_a / (inside_a - inside_b)));
-  }
-  return kept;
-}
-
 /// Widens near..far by the part of a box between the face's side planes. A box that reaches past
 /// them would else begin behind the light.
 void extend_range(const shader::MapFace& face, const glm::dvec3& low, const glm::dvec3& high,
                   double& near, double& far) {
   const glm::dmat4 rows = glm::transpose(glm::dmat4(face.clip_from_world));
-  const glm::dvec4 sides[4] = {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1],
-                               rows[3] + rows[1]};
+  const HalfSpace sides[4] = {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1],
+                              rows[3] + rows[1]};
   const glm::dvec3 origin(face.origin);
-  // All corners of box and pyramid together lie on the box's faces, but for the pyramid's tip.
-  if (glm::all(glm::lessThanEqual(low, origin)) && glm::all(glm::lessThanEqual(origin, high)))
-    near = std::min(near, 0.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const double level : {low[axis], high[axis]}) {
-      std::vector<glm::dvec3> polygon(4);
-      for (std::size_t corner = 0; corner < 4; ++corner) {
-        polygon[corner][axis] = level;
-        polygon[corner][u] = corner == 1 || corner == 2 ? high[u] : low[u];
-        polygon[corner][v] = corner >= 2 ? high[v] : low[v];
-      }
-      for (const glm::dvec4& side : sides) polygon = clip(polygon, side);
-      for (const glm::dvec3& point : polygon) {
-        const double distance = glm::dot(point - origin, glm::dvec3(face.forward));
-        near = std::min(near, distance);
-        far = std::max(far, distance);
-      }
-    }
-  }
+  if (contains({low, high}, origin)) near = std::min(near, 0.0);
+  visit_clipped_corners({low, high}, sides, [&](const glm::dvec3& point) {
+    const double distance = glm::dot(point - origin, glm::dvec3(face.forward));
+    near = std::min(near, distance);
+    far = std::max(far, distance);
+  });
 }
 
 Bounds bounds_along(const GpuScene& scene, const Axes& axes) {

@@ -54,6 +54,7 @@ int run(int argc, const char* const* argv) {
                  "File of options, TOML or INI: name = value, in a section [command] or for all");
   add_serve_commands(app, session);
   add_render_commands(app, session);
+  add_plan_command(app, session);
   add_compare_command(app, session);
   add_catalogue_commands(app, session);
   add_scene_commands(app, session);

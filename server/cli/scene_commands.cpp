@@ -85,21 +85,20 @@ void add_scene_commands(CLI::App& app, Session& session) {
   import->callback([options, &session] {
     session.action = [options, &session] {
       return import_scene(session, options->file, options->id, options->data);
-};
-}  // namespace penumbra::server::cli
-);
+    };
+  });
 
-CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
-out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
-    ->required();
-out->add_option("--out", options->out, "File, .glb")->required();
-out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
-add_json_flag(*out, session);
-out->callback([options, &session] {
-  session.action = [options, &session] {
-    return export_scene(session, options->scene, options->out, options->data);
-  };
-});
+  CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
+  out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
+      ->required();
+  out->add_option("--out", options->out, "File, .glb")->required();
+  out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
+  add_json_flag(*out, session);
+  out->callback([options, &session] {
+    session.action = [options, &session] {
+      return export_scene(session, options->scene, options->out, options->data);
+    };
+  });
 }
 
 }  // namespace penumbra::server::cli

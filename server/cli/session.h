@@ -23,6 +23,7 @@ void add_json_flag(CLI::App& command, Session& session);
 /// Each adds one command, or a few that belong together.
 void add_serve_commands(CLI::App& app, Session& session);      // serve, worker
 void add_render_commands(CLI::App& app, Session& session);     // render, measure
+void add_plan_command(CLI::App& app, Session& session);        // plan
 void add_compare_command(CLI::App& app, Session& session);     // compare
 void add_catalogue_commands(CLI::App& app, Session& session);  // scenes, techniques
 void add_scene_commands(CLI::App& app, Session& session);      // import, export-scene

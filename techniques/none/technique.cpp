@@ -6,7 +6,9 @@ namespace {
 /// Lights every point that faces the light inside its cone: what shadows are compared with.
 class None : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput&, Requirements& needs) override {
+    needs.casters = CasterUse::none;
+  }
   void prepare(PrepareContext&) override {}
   void bind(vulkan::Bindings&) const override {}
 };

@@ -53,7 +53,8 @@ std::optional<glm::dmat4> plane_from_caster(const glm::dvec4& plane, const World
 
 class Projected : public Technique {
  public:
-  void require(const TechniqueInput& input, Requirements&) override {
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    needs.casters = CasterUse::beam;
     bool any = false;
     for (const PlanarReceiver& receiver : input.scene.receivers)
       any = any || plane_of(receiver.corners).has_value();

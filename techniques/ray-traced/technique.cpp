@@ -8,6 +8,7 @@ class RayTraced : public Technique {
  public:
   void require(const TechniqueInput& input, Requirements& needs) override {
     const bool extended = input.light.extent.kind != ExtentKind::none;
+    needs.casters = CasterUse::beam;
     needs.acceleration_structure = true;
     needs.light_points =
         extended ? static_cast<std::uint32_t>(integer_of(input.parameters, "rays")) : 1;

@@ -9,6 +9,7 @@ class Reference : public Technique {
  public:
   void require(const TechniqueInput& input, Requirements& needs) override {
     const bool extended = input.light.extent.kind != ExtentKind::none;
+    needs.casters = CasterUse::beam;
     needs.acceleration_structure = true;
     needs.light_points = extended ? input.light_samples : 1;
     needs.shade_each_point = choice_of(input.parameters, "mode") == "shaded";

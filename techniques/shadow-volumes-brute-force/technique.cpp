@@ -6,7 +6,10 @@ namespace {
 /// Hard shadows by three sides of every lit triangle, counted between camera and surface.
 class BruteForceShadowVolumes : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements& needs) override { needs.stencil = true; }
+  void require(const TechniqueInput&, Requirements& needs) override {
+    needs.casters = CasterUse::all;  // a volume around the camera spoils the count everywhere
+    needs.stencil = true;
+  }
   void prepare(PrepareContext& context) override {
     shadow_volumes::VolumeOptions options;
     options.clamp = boolean_of(context.input.parameters, "clamp");

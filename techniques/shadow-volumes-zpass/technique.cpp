@@ -8,6 +8,7 @@ namespace {
 class ShadowVolumesZPass : public Technique {
  public:
   void require(const TechniqueInput&, Requirements& needs) override {
+    needs.casters = CasterUse::all;  // a volume around the camera spoils the count everywhere
     needs.stencil = true;
     needs.adjacency = true;
   }

@@ -7,6 +7,7 @@ namespace {
 class ShadowVolumes : public Technique {
  public:
   void require(const TechniqueInput&, Requirements& needs) override {
+    needs.casters = CasterUse::beam;
     needs.stencil = true;
     needs.adjacency = true;
   }

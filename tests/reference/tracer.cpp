@@ -124,7 +124,10 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene)
               vulkan::MemoryKind::readback) {
   library_.add(embedded_renderer_shaders());
   std::memset(faults_.mapped(), 0, faults_.size());
-  scene_ = std::make_unique<GpuScene>(device_, std::move(scene));
+  std::vector<InstanceUse> everything(scene->instances.size());
+  std::vector<bool> textures(scene->textures.size(), true);
+  scene_ = std::make_unique<GpuScene>(device_, std::move(scene), std::move(everything),
+                                      std::move(textures));
 }
 
 std::uint32_t Tracer::unfinished() const {

@@ -1,0 +1,51 @@
+#include "renderer/scene/convex_clip.h"
+
+namespace penumbra {
+
+std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfSpace& side) {
+  std::vector<glm::dvec3> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3& a = polygon[i];
+    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
+    const double inside_a = glm::dot(side, glm::dvec4(a, 1.0));
+    const double inside_b = glm::dot(side, glm::dvec4(b, 1.0));
+    if (inside_a >= 0.0) kept.push_back(a);
+    if ((inside_a < 0.0) != (inside_b < 0.0))
+      kept.push_back(glm::mix(a, b, inside_a / (inside_a - inside_b)));
+  }
+  return kept;
+}
+
+void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
+                           const std::function<void(const glm::dvec3&)>& visit) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const double level : {box.low[axis], box.high[axis]}) {
+      std::vector<glm::dvec3> polygon(4);
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        polygon[corner][axis] = level;
+        polygon[corner][u] = corner == 1 || corner == 2 ? box.high[u] : box.low[u];
+        polygon[corner][v] = corner >= 2 ? box.high[v] : box.low[v];
+      }
+      for (const HalfSpace& side : sides) polygon = clip(polygon, side);
+      for (const glm::dvec3& point : polygon) visit(point);
+    }
+  }
+}
+
+bool may_touch(const Bounds& box, std::span<const HalfSpace> sides) {
+  for (const HalfSpace& side : sides) {
+    const glm::dvec3 innermost(side.x > 0.0 ? box.high.x : box.low.x,
+                               side.y > 0.0 ? box.high.y : box.low.y,
+                               side.z > 0.0 ? box.high.z : box.low.z);
+    if (glm::dot(side, glm::dvec4(innermost, 1.0)) < 0.0) return false;
+  }
+  return true;
+}
+
+bool contains(const Bounds& box, const glm::dvec3& point) {
+  return glm::all(glm::lessThanEqual(box.low, point)) &&
+         glm::all(glm::lessThanEqual(point, box.high));
+}
+
+}  // namespace penumbra

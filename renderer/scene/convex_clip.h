@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "renderer/scene/scene.h"
+
+namespace penumbra {
+
+/// A half-space: dot(side, (p, 1)) is not negative within.
+using HalfSpace = glm::dvec4;
+
+/// The part of a convex polygon inside a half-space (Sutherland and Hodgman 1974).
+std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfSpace& side);
+
+/// Calls `visit` with every corner of the box's six faces, each clipped to all of `sides`. Together
+/// with corners of the half-spaces' own body that lie within the box, these span their common part.
+void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
+                           const std::function<void(const glm::dvec3&)>& visit);
+
+/// False only if the box lies wholly outside one of the half-spaces.
+bool may_touch(const Bounds& box, std::span<const HalfSpace> sides);
+
+bool contains(const Bounds& box, const glm::dvec3& point);
+
+}  // namespace penumbra

@@ -1,0 +1,326 @@
+#include "renderer/scene/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/frame/light_points.h"
+#include "renderer/frame/transforms.h"
+#include "renderer/scene/convex_clip.h"
+
+namespace penumbra {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Beyond so many pairs of caster and lit surface the surfaces' common box stands for them.
+constexpr std::size_t most_pairs = 4'000'000;
+
+/// What the camera sees: half-spaces, and the corners where they begin.
+struct View {
+  std::vector<HalfSpace> sides;
+  std::vector<glm::dvec3> corners;
+};
+
+HalfSpace half_space(const glm::dvec3& inwards, const glm::dvec3& through) {
+  return {inwards, -glm::dot(inwards, through)};
+}
+
+View view_of(const Camera& camera, double aspect) {
+  const glm::dvec3 forward = glm::normalize(camera.target - camera.position);
+  const glm::dvec3 up = across(forward, camera.up);
+  const glm::dvec3 right = glm::cross(forward, up);
+  const glm::dvec3 near_center = camera.position + camera.near_plane * forward;
+  const bool perspective = camera.projection == Projection::perspective;
+  const double tangent = std::tan(0.5 * glm::radians(camera.vertical_fov));
+  const double half_height =
+      perspective ? camera.near_plane * tangent : 0.5 * camera.orthographic_height;
+  View view;
+  view.sides.push_back(half_space(forward, near_center));
+  for (const double sign : {-1.0, 1.0}) {
+    const glm::dvec3 edge_x = near_center + sign * half_height * aspect * right;
+    const glm::dvec3 edge_y = near_center + sign * half_height * up;
+    view.sides.push_back(
+        half_space((perspective ? tangent * aspect : 0.0) * forward - sign * right, edge_x));
+    view.sides.push_back(half_space((perspective ? tangent : 0.0) * forward - sign * up, edge_y));
+    for (const double other : {-1.0, 1.0})
+      view.corners.push_back(edge_x + other * half_height * up);
+  }
+  return view;
+}
+
+/// Box around the part of `box` inside convex `sides` whose own corners are given; may be empty.
+Bounds common_part(const Bounds& box, std::span<const HalfSpace> sides,
+                   std::span<const glm::dvec3> corners) {
+  Bounds part;
+  visit_clipped_corners(box, sides, [&](const glm::dvec3& point) { part.add(point); });
+  for (const glm::dvec3& corner : corners)
+    if (contains(box, corner)) part.add(corner);
+  return part;
+}
+
+/// One light's geometry: where it is, and what its cone encloses.
+class LightReach {
+ public:
+  explicit LightReach(const Light& light) : light_(light) {
+    direction_ = glm::normalize(light.direction);
+    glm::dvec3 half = extent_half_size(light);
+    if (light.kind == LightKind::directional) half = glm::tan(glm::radians(half));
+    radius_ = glm::length(half);
+  }
+
+  bool shines() const {
+    return light_.intensity > 0.0f &&
+           std::max({light_.color.r, light_.color.g, light_.color.b}) > 0.0f;
+  }
+
+  /// Box around what the light reaches within `box`.
+  Bounds lit(const Bounds& box) const {
+    if (light_.kind == LightKind::directional) return box;
+    if (light_.range > 0.0) {
+      const glm::dvec3 nearest = glm::clamp(light_.position, box.low, box.high);
+      if (glm::length(nearest - light_.position) > light_.range + radius_) return {};
+    }
+    if (light_.kind == LightKind::point) return box;
+    // The pyramid around all cones that begin on the extent, as seen from behind the light.
+    const double tangent = std::tan(glm::radians(light_.outer_angle));
+    const glm::dvec3 tip =
+        light_.position - direction_ * radius_ * std::sqrt(1.0 + 1.0 / (tangent * tangent));
+    return common_part(box, pyramid(tip, tangent), {&tip, 1});
+  }
+
+  /// Whether something within `caster` may stand between the light and something within `lit`.
+  /// Light and lit box span the hull of all boxes (1 - t) light + t lit, 0 <= t <= 1.
+  bool may_shadow(const Bounds& caster, const Bounds& lit) const {
+    const bool directional = light_.kind == LightKind::directional;
+    // Where the hull begins and how its box grows along it.
+    const Bounds start =
+        directional ? lit : Bounds{light_.position - radius_, light_.position + radius_};
+    const glm::dvec3 low_step = directional ? -direction_ - radius_ : lit.low - start.low;
+    const glm::dvec3 high_step = directional ? -direction_ + radius_ : lit.high - start.high;
+    double first = 0.0;
+    double last = directional ? infinity : 1.0;
+    // Keeps the t for which value + t * step <= limit.
+    const auto restrict = [&](double value, double step, double limit) {
+      const double room = limit - value;
+      if (step > 0.0) last = std::min(last, room / step);
+      if (step < 0.0) first = std::max(first, room / step);
+      if (step == 0.0 && room < 0.0) last = -infinity;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      restrict(start.low[axis], low_step[axis], caster.high[axis]);
+      restrict(-start.high[axis], -high_step[axis], -caster.low[axis]);
+    }
+    return first <= last;
+  }
+
+  /// Whether filters that mix neighbouring directions may read it.
+  bool in_filtered_cone(const Bounds& caster) const {
+    if (light_.kind != LightKind::spot) return true;
+    const double tangent = widest_filtered_cone * std::tan(glm::radians(light_.outer_angle));
+    return may_touch(caster, pyramid(light_.position, tangent));
+  }
+
+ private:
+  std::vector<HalfSpace> pyramid(const glm::dvec3& tip, double tangent) const {
+    const glm::dvec3 up = across(direction_, light_.up);
+    const glm::dvec3 right = glm::cross(direction_, up);
+    std::vector<HalfSpace> sides;
+    for (const glm::dvec3& axis : {right, -right, up, -up})
+      sides.push_back(half_space(tangent * direction_ + axis, tip));
+    return sides;
+  }
+
+  const Light& light_;
+  glm::dvec3 direction_;
+  double radius_;
+};
+
+std::uint64_t geometry_bytes(const Mesh& mesh) {
+  constexpr std::uint64_t vertex = 12 + 24;  // position; normal, texture coordinates, colour
+  return mesh.positions.size() * vertex + mesh.indices.size() * sizeof(std::uint32_t);
+}
+
+std::uint64_t texture_bytes(const Texture& texture) {
+  return texture.rgba.size() + texture.rgba.size() / 3;  // with its mip levels
+}
+
+class Planner {
+ public:
+  Planner(const RenderRequest& request, const ParameterValues& parameters,
+          const std::vector<Bounds>& boxes)
+      : request_(request), scene_(*request.scene), boxes_(boxes) {
+    camera_ = &scene_.cameras[find_camera(scene_, request.camera)];
+    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(request.supersampling)));
+    for (const Light& light : scene_.lights) {
+      Requirements needs;
+      request.technique->create()->require(
+          {scene_, light, *camera_, parameters, request.width * side, request.height * side,
+           request.light_samples, request.seed},
+          needs);
+      plan_.needs.push_back(needs);
+    }
+  }
+
+  Plan make() {
+    find_visible();
+    plan_.instances.assign(scene_.instances.size(), {true, false});
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i)
+      plan_.instances[i].visible = !request_.rules.surfaces || !seen_[i].empty();
+    for (std::size_t l = 0; l < scene_.lights.size(); ++l) plan_light(l);
+    explain_instances();
+    plan_textures();
+    explain_requirements();
+    return std::move(plan_);
+  }
+
+ private:
+  void find_visible() {
+    const View view = view_of(*camera_, static_cast<double>(request_.width) / request_.height);
+    for (const Bounds& box : boxes_)
+      seen_.push_back(may_touch(box, view.sides) ? common_part(box, view.sides, view.corners)
+                                                 : Bounds{});
+  }
+
+  void plan_light(std::size_t index) {
+    const Light& light = scene_.lights[index];
+    const LightReach reach(light);
+    std::vector<Bounds> lit;
+    if (reach.shines())
+      for (const Bounds& box : seen_)
+        if (!box.empty())
+          if (const Bounds part = reach.lit(box); !part.empty()) lit.push_back(part);
+    const bool kept = !request_.rules.lights || !lit.empty();
+    plan_.lights.push_back(kept);
+    line("lights", light.name, !lit.empty(),
+         lit.empty()
+             ? (reach.shines() ? "reaches nothing that the camera sees" : "has no intensity")
+             : "reaches " + std::to_string(lit.size()) + " of the visible instances");
+    if (!kept) return;
+    if (lit.size() * boxes_.size() > most_pairs) {
+      Bounds all;
+      for (const Bounds& box : lit) all.add(box);
+      lit = {all};
+    }
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+      if (scene_.instances[i].casts_shadow && casts(reach, plan_.needs[index], boxes_[i], lit))
+        plan_.instances[i].casts = true;
+  }
+
+  bool casts(const LightReach& reach, const Requirements& needs, const Bounds& caster,
+             const std::vector<Bounds>& lit) const {
+    if (needs.casters == CasterUse::none) return false;
+    if (!request_.rules.casters || needs.casters == CasterUse::all) return true;
+    if (needs.casters == CasterUse::cone) return reach.in_filtered_cone(caster);
+    return std::any_of(lit.begin(), lit.end(),
+                       [&](const Bounds& part) { return reach.may_shadow(caster, part); });
+  }
+
+  void explain_instances() {
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const Instance& instance = scene_.instances[i];
+      const InstanceUse& use = plan_.instances[i];
+      const bool uploaded = use.visible || use.casts;
+      const std::uint64_t bytes = geometry_bytes(scene_.meshes[instance.mesh]);
+      line("surfaces", instance.name, use.visible,
+           seen_[i].empty() ? "outside the camera's view" : "the camera may see it",
+           use.visible || !uploaded ? bytes : 0);
+      std::string why = "stands between no light and anything visible";
+      if (!instance.casts_shadow)
+        why = "casts no shadow";
+      else if (use.casts)
+        why = "may shadow something visible";
+      else if (no_casters())
+        why = request_.technique->id + " asks for no casters";
+      line("casters", instance.name, use.casts, why, !use.visible && use.casts ? bytes : 0);
+    }
+  }
+
+  bool no_casters() const {
+    return std::all_of(plan_.needs.begin(), plan_.needs.end(),
+                       [](const Requirements& needs) { return needs.casters == CasterUse::none; });
+  }
+
+  void plan_textures() {
+    plan_.textures.assign(scene_.textures.size(), !request_.rules.textures);
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const InstanceUse& use = plan_.instances[i];
+      for (const Primitive& primitive : scene_.meshes[scene_.instances[i].mesh].primitives) {
+        const Material& material = scene_.materials[primitive.material];
+        const bool holes = material.alpha_mode == AlphaMode::mask;
+        if (material.texture >= 0 && (use.visible || (use.casts && holes)))
+          plan_.textures[static_cast<std::size_t>(material.texture)] = true;
+      }
+    }
+    for (std::size_t t = 0; t < scene_.textures.size(); ++t)
+      line("textures", scene_.textures[t].name, plan_.textures[t],
+           plan_.textures[t] ? "on a visible surface, or the holes of a caster"
+                             : "on nothing that is drawn",
+           texture_bytes(scene_.textures[t]));
+  }
+
+  void explain_requirements() {
+    const std::string& technique = request_.technique->id;
+    const auto any = [&](auto member) {
+      for (std::size_t l = 0; l < plan_.needs.size(); ++l)
+        if (plan_.lights[l] && plan_.needs[l].*member) return true;
+      return false;
+    };
+    const auto explain = [&](const char* rule, const char* subject, bool needed) {
+      line(rule, subject, needed, technique + (needed ? " needs it" : " does not ask for it"));
+    };
+    explain("adjacency", "triangles with adjacency", any(&Requirements::adjacency));
+    explain("stencil", "stencil plane", any(&Requirements::stencil));
+    explain("hierarchy", "bounding volume hierarchy", any(&Requirements::acceleration_structure));
+    for (std::size_t l = 0; l < plan_.needs.size(); ++l) {
+      const Light& light = scene_.lights[l];
+      if (!plan_.lights[l]) continue;
+      const std::uint32_t points = plan_.needs[l].light_points;
+      const bool hard = light.extent.kind == ExtentKind::none;
+      line("extent", light.name, points > 1,
+           hard         ? "has no extent: hard shadows, one point"
+           : points > 1 ? std::to_string(points) + " points on its extent, one by one"
+                        : technique + " works from its centre");
+    }
+  }
+
+  void line(const char* rule, const std::string& subject, bool kept, std::string reason,
+            std::uint64_t bytes = 0) {
+    plan_.lines.push_back({rule, subject, kept, std::move(reason), bytes});
+  }
+
+  const RenderRequest& request_;
+  const Scene& scene_;
+  const std::vector<Bounds>& boxes_;
+  const Camera* camera_;
+  std::vector<Bounds> seen_;  ///< of each instance what the camera may see; empty: nothing
+  Plan plan_;
+};
+
+}  // namespace
+
+std::vector<Bounds> instance_boxes(const Scene& scene) {
+  std::vector<Bounds> boxes;
+  for (const Instance& instance : scene.instances) {
+    Bounds box;
+    for (const glm::vec3& position : scene.meshes.at(instance.mesh).positions)
+      box.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0)));
+    boxes.push_back(box);
+  }
+  Bounds all;
+  for (const Bounds& box : boxes) all.add(box);
+  if (all.empty()) return boxes;
+  const double pad = 1e-6 * (glm::length(all.size()) + 1e-3);
+  for (Bounds& box : boxes) {
+    box.low -= pad;
+    box.high += pad;
+  }
+  return boxes;
+}
+
+Plan make_plan(const RenderRequest& request, const ParameterValues& parameters,
+               const std::vector<Bounds>& boxes) {
+  return Planner(request, parameters, boxes).make();
+}
+
+}  // namespace penumbra
