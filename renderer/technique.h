@@ -13,6 +13,7 @@
 namespace penumbra {
 
 class PrepareContext;  // renderer/frame/prepare_context.h: what a technique may use while it draws
+struct SampleList;     // renderer/frame/sample_list.h: samples of the frame
 namespace vulkan {
 class Bindings;  // renderer/vulkan/pipeline.h: shader resources by name
 }
@@ -66,6 +67,10 @@ class Technique {
 
   /// Names the resources that the GLSL reads; checked both ways against reflection.
   virtual void bind(vulkan::Bindings& bindings) const = 0;
+
+  /// For techniques of many light points: the samples that any of the light reaches, where prepare
+  /// found out in the first batch. Others are not shaded. Null: all are.
+  virtual const SampleList* lit_samples() const { return nullptr; }
 };
 
 struct Diagnostic {

@@ -3,7 +3,23 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "renderer/frame/sample_list.h"
+
 namespace penumbra {
+namespace {
+
+constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch);
+
+/// Points for samples that nothing hides the light from: over them light varies smoothly, and a
+/// low-discrepancy mean of so many errs far below what a picture of 8 bits shows.
+constexpr std::uint32_t few_per_pixel = 256;
+constexpr std::uint32_t few_per_sample = 32;
+
+std::uint32_t batch_count(std::size_t points) {
+  return (static_cast<std::uint32_t>(points) + batch_size - 1) / batch_size;
+}
+
+}  // namespace
 
 LightPass::LightPass(const FrameSetup& setup, const Light& light)
     : setup_(setup),
@@ -18,52 +34,84 @@ LightPass::LightPass(const FrameSetup& setup, const Light& light)
              setup.request.seed},
       technique_(setup.request.technique->create()) {
   technique_->require(input_, needs_);
-  const std::uint32_t sets = setup.side * setup.side;
+  sets_ = setup_.side * setup_.side;
   if (needs_.light_points > 1) {
-    points_per_set_ = std::max(1u, needs_.light_points / sets);
-    points_ = light_points(light_, points_per_set_, sets, setup.request.seed, needs_.random_points);
+    const auto make = [&](std::uint32_t per_pixel, std::uint32_t least) {
+      return light_points(light_, std::max(least, per_pixel / sets_), sets_, setup_.request.seed,
+                          needs_.random_points);
+    };
+    points_ = make(needs_.light_points, 1);
+    few_points_ = make(few_per_pixel, few_per_sample);
+    if (few_points_.size() > points_.size()) few_points_ = points_;
   } else {
     const glm::dvec3 center =
         light.kind == LightKind::directional ? -light_.direction : light_.position;
-    points_.assign(sets, glm::vec4(center, 0.0));
+    points_.assign(sets_, glm::vec4(center, 0.0));
   }
 }
 
+/// A batch of each set's points. Places without a point repeat one.
+LightPass::Batch LightPass::make_batch(const std::vector<glm::vec4>& points,
+                                       std::uint32_t index) const {
+  const auto per_set = static_cast<std::uint32_t>(points.size()) / sets_;
+  const std::uint32_t first = index * batch_size;
+  Batch batch;
+  batch.count = std::min(batch_size, per_set - first);
+  batch.weight = 1.0f / static_cast<float>(per_set);
+  batch.points.assign(std::size_t{batch_size} * sets_, points.front());
+  for (std::uint32_t set = 0; set < sets_; ++set)
+    std::copy_n(points.begin() + static_cast<std::ptrdiff_t>(set * per_set + first), batch.count,
+                batch.points.begin() + static_cast<std::ptrdiff_t>(set * batch_size));
+  return batch;
+}
+
 void LightPass::draw(const Frame& frame, const std::function<void(double)>& after_batch) {
-  constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch);
-  const std::uint32_t sets = setup_.side * setup_.side;
-  const std::uint32_t batches = (points_per_set_ + batch_size - 1) / batch_size;
+  const std::uint32_t batches = batch_count(points_.size() / sets_);
+  const bool many = needs_.light_points > 1;
+  if (many) clear_sum(frame);
   const VkDeviceSize constants_mark = frame.constants.mark();
-  for (std::uint32_t batch = 0; batch < batches; ++batch) {
-    // A light with many points is cut into submissions, so that it can report and be cancelled; what
-    // a finished batch pushed is free again.
-    if (batch > 0) frame.constants.rewind(constants_mark);
-    const std::uint32_t first = batch * batch_size;
-    const std::uint32_t count = std::min(batch_size, points_per_set_ - first);
-    std::vector<glm::vec4> points(std::size_t{batch_size} * shader::max_supersampling,
-                                  points_.front());
-    for (std::uint32_t set = 0; set < sets; ++set)
-      std::copy_n(points_.begin() + static_cast<std::ptrdiff_t>(set * points_per_set_ + first),
-                  count, points.begin() + static_cast<std::ptrdiff_t>(set * batch_size));
-    const float weight = static_cast<float>(count) / static_cast<float>(points_per_set_);
+  for (std::uint32_t index = 0; index < batches; ++index) {
+    // A light with many points is cut into submissions, so that it can report and be cancelled;
+    // what a finished batch pushed is free again.
+    if (index > 0) frame.constants.rewind(constants_mark);
+    const Batch batch = make_batch(points_, index);
+    const std::span<const glm::vec4> points(batch.points);
     vulkan::Bindings bindings = frame.frame_bindings;
-    bindings.buffer("LightBlock",
-                    frame.constants.push(light_data(light_, static_cast<float>(count), weight)));
-    bindings.buffer("LightPointBlock",
-                    frame.constants.push_array(std::span<const glm::vec4>(points)));
-    const auto own_points = std::span<const glm::vec4>(points).first(sets * batch_size);
-    PrepareContext context{input_,          setup_.scene,   light_,          setup_.matrices,
-                           frame.geometry,  frame.device,   frame.pipelines, ledger_,
-                           frame.constants, frame.recorder, bindings,        setup_.declarations,
-                           own_points,      count,          batch,           batches,         frame.frame_index,
+    bindings.buffer("LightBlock", frame.constants.push(light_data(
+                                      light_, static_cast<float>(batch.count), batch.weight)));
+    bindings.buffer("LightPointBlock", frame.constants.push_array(points.first(batch_size)));
+    PrepareContext context{input_,
+                           setup_.scene,
+                           light_,
+                           setup_.matrices,
+                           frame.geometry,
+                           frame.device,
+                           frame.pipelines,
+                           ledger_,
+                           frame.constants,
+                           frame.recorder,
+                           bindings,
+                           setup_.declarations,
+                           points,
+                           batch.count,
+                           index,
+                           batches,
+                           frame.frame_index,
                            frame.notes,
                            needs_.adjacency ? &setup_.scene.adjacency(frame.device) : nullptr};
     technique_->prepare(context);
-    shade(frame, bindings, batch == 0);
+    if (many) {
+      shade_points(frame, bindings, batch, false);
+      if (index < batch_count(few_points_.size() / sets_))
+        shade_points(frame, bindings, make_batch(few_points_, index), true);
+    } else {
+      shade(frame, bindings);
+    }
     last_bindings_ = bindings;
-    if (needs_.light_points > 1) frame.recorder.flush();
-    after_batch(static_cast<double>(batch + 1) / batches);
+    if (many) frame.recorder.flush();
+    after_batch(static_cast<double>(index + 1) / batches);
   }
+  if (many) add_sum(frame, last_bindings_);
 }
 
 std::string LightPass::program_path(vulkan::ShaderLibrary& library, const std::string& head) const {
@@ -91,13 +139,31 @@ vulkan::Bindings LightPass::shading_bindings(const Frame& frame,
   return all;
 }
 
-void LightPass::shade(const Frame& frame, const vulkan::Bindings& bindings, bool first_batch) {
+void LightPass::shade(const Frame& frame, const vulkan::Bindings& bindings) {
+  draw_light(frame, program_path(frame.library, "renderer/shaders/shade.glsl"),
+             [&](const vulkan::Pipeline& pipeline) {
+               return shading_bindings(frame, bindings, pipeline);
+             });
+}
+
+void LightPass::add_sum(const Frame& frame, const vulkan::Bindings& bindings) {
+  draw_light(frame, "renderer/shaders/add_light.frag", [&](const vulkan::Pipeline&) {
+    vulkan::Bindings all = bindings;
+    all.texture("geometry_position", frame.geometry.position, vulkan::Sampling::nearest);
+    all.texture("geometry_words", frame.geometry.words, vulkan::Sampling::nearest);
+    all.texture("light_sum", *frame.light_sum, vulkan::Sampling::nearest);
+    return all;
+  });
+}
+
+/// Draws a full-screen program that adds a light to radiance and visibility.
+void LightPass::draw_light(
+    const Frame& frame, const std::string& fragment_stage,
+    const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of) {
   vulkan::ProgramSource source;
-  source.stages = {
-      {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-      {VK_SHADER_STAGE_FRAGMENT_BIT, program_path(frame.library, "renderer/shaders/shade.glsl")}};
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, fragment_stage}};
   source.preamble = setup_.declarations;
-  if (needs_.light_points > 1) source.preamble += "#define MANY_POINTS\n";
   if (needs_.shade_each_point) source.preamble += "#define SHADE_EACH_POINT\n";
   if (frame.visibility != nullptr) source.preamble += "#define WITH_VISIBILITY\n";
   vulkan::GraphicsState state;
@@ -109,15 +175,61 @@ void LightPass::shade(const Frame& frame, const vulkan::Bindings& bindings, bool
   targets.colors = {{frame.geometry.radiance.slice(0), false, {}}};
   if (frame.visibility != nullptr) {
     state.color_formats.push_back(frame.visibility->description().format);
-    targets.colors.push_back({frame.visibility->slice(0), first_batch, {}});
+    targets.colors.push_back({frame.visibility->slice(0), true, {}});
   }
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);
-  const vulkan::Bindings all = shading_bindings(frame, bindings, pipeline);
+  const vulkan::Bindings all = bindings_of(pipeline);
   frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
     commands.bind(pipeline, all);
     commands.full_screen_triangle();
     commands.end_rendering();
+  });
+}
+
+void LightPass::clear_sum(const Frame& frame) {
+  frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
+    vulkan::RenderTargets targets;
+    targets.width = frame.geometry.width;
+    targets.height = frame.geometry.height;
+    targets.colors = {{frame.light_sum->slice(0), true, {}}};
+    commands.begin_rendering(targets);
+    commands.end_rendering();
+  });
+}
+
+/// Adds a batch of points to the light's sums: at the samples of the technique's list that nothing
+/// hides the light from, or at the others; at all that are not fully lit where it has no list.
+void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& bindings,
+                             const Batch& batch, bool at_fully_lit) {
+  const SampleList* list = technique_->lit_samples();
+  if (list == nullptr && at_fully_lit) return;
+  std::string preamble = setup_.declarations;
+  if (needs_.shade_each_point) preamble += "#define SHADE_EACH_POINT\n";
+  if (list != nullptr) preamble += "#define WITH_SAMPLE_LIST\n";
+  const vulkan::Pipeline& pipeline = frame.pipelines.compute(
+      program_path(frame.library, "renderer/shaders/shade_points.glsl"), preamble);
+  vulkan::Bindings all = shading_bindings(frame, bindings, pipeline);
+  all.storage_image("light_sum", *frame.light_sum);
+  all.buffer("LightBlock", frame.constants.push(
+                               light_data(light_, static_cast<float>(batch.count), batch.weight)));
+  if (list != nullptr) all.buffer("SampleBlock", list->texels.whole());
+  const std::span<const glm::vec4> points(batch.points);
+  frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
+    for (std::uint32_t set = 0; set < sets_; ++set) {
+      all.buffer("LightPointBlock",
+                 frame.constants.push_array(points.subspan(set * batch_size, batch_size)));
+      commands.bind(pipeline, all);
+      SampleWork work;
+      work.set = set;
+      if (list == nullptr) {
+        dispatch_all(commands, setup_.width, setup_.height, setup_.side, work);
+        continue;
+      }
+      for (const SampleList::Range& range : list->ranges)
+        if (range.set == set && range.fully_lit == at_fully_lit)
+          dispatch_range(commands, range, work);
+    }
   });
 }
 

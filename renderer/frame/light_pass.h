@@ -37,6 +37,7 @@ class LightPass {
     vulkan::ConstantArena& constants;
     const GeometryBuffer& geometry;
     const vulkan::Image* visibility;  ///< samples of this light, or null
+    const vulkan::Image* light_sum;   ///< sums over light points, where a light has many
     vulkan::Bindings frame_bindings;
     std::uint32_t frame_index;
     std::vector<std::string>& notes;
@@ -48,7 +49,20 @@ class LightPass {
   void draw_diagnostic(const Frame& frame, const std::string& name, const vulkan::Image& target);
 
  private:
-  void shade(const Frame& frame, const vulkan::Bindings& bindings, bool first_batch);
+  void clear_sum(const Frame& frame);
+  /// Points of a batch, one set after the other.
+  struct Batch {
+    std::vector<glm::vec4> points;
+    std::uint32_t count;  ///< points of a set in use
+    float weight;         ///< of a point
+  };
+  Batch make_batch(const std::vector<glm::vec4>& points, std::uint32_t index) const;
+  void shade_points(const Frame& frame, const vulkan::Bindings& bindings, const Batch& batch,
+                    bool at_fully_lit);
+  void add_sum(const Frame& frame, const vulkan::Bindings& bindings);
+  void shade(const Frame& frame, const vulkan::Bindings& bindings);
+  void draw_light(const Frame& frame, const std::string& fragment_stage,
+                  const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of);
   vulkan::Bindings shading_bindings(const Frame& frame, const vulkan::Bindings& light_bindings,
                                     const vulkan::Pipeline& pipeline) const;
   std::string program_path(vulkan::ShaderLibrary& library, const std::string& head) const;
@@ -58,8 +72,9 @@ class LightPass {
   TechniqueInput input_;
   Requirements needs_;
   std::unique_ptr<Technique> technique_;
-  std::vector<glm::vec4> points_;  ///< all points, set after set
-  std::uint32_t points_per_set_ = 1;
+  std::vector<glm::vec4> points_;      ///< all points, set after set
+  std::vector<glm::vec4> few_points_;  ///< for samples that nothing hides the light from
+  std::uint32_t sets_ = 1;             ///< samples of a pixel, each with its own points
   vulkan::MemoryLedger ledger_;
   vulkan::Bindings last_bindings_;
 };

@@ -159,7 +159,7 @@ class FrameRun {
   std::vector<std::unique_ptr<LightPass>> lights_;
   vulkan::MemoryLedger targets_ledger_;
   GeometryBuffer geometry_;
-  vulkan::Image picture_, linear_, visibility_samples_, visibility_, diagnostic_;
+  vulkan::Image picture_, linear_, light_sum_, visibility_samples_, visibility_, diagnostic_;
   std::uint32_t frames_total_ = 1;
   std::uint32_t frame_ = 0;
   CostReport costs_;
@@ -191,11 +191,13 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
   setup_.declarations = parameter_declarations(request.technique->parameters, parameters);
 
   bool stencil = false;
+  bool many_points = false;
   for (std::size_t i = 0; i < plan_.lights.size(); ++i) {
     lights_.push_back(nullptr);
     if (!plan_.lights[i]) continue;
     lights_.back() = std::make_unique<LightPass>(setup_, request.scene->lights[i]);
     stencil = stencil || lights_.back()->needs().stencil;
+    many_points = many_points || lights_.back()->needs().light_points > 1;
   }
   if (!request.diagnostic.empty() && first_light() == lights_.size())
     throw unsupported("no light reaches what the camera sees: there is nothing to show",
@@ -203,6 +205,8 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
   geometry_ =
       make_geometry_buffer(state.device, targets_ledger_, setup_.width, setup_.height, stencil);
   picture_ = make_target("picture", picture_format, request.width, request.height);
+  if (many_points)
+    light_sum_ = make_target("light sums", linear_format, setup_.width, setup_.height);
   if (request.linear)
     linear_ = make_target("linear picture", linear_format, request.width, request.height);
   if (request.visibility && !lights_.empty()) {
@@ -224,6 +228,7 @@ vulkan::Image FrameRun::make_target(const char* name, VkFormat format, std::uint
   description.layers = layers;
   description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                       VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  if (format == linear_format) description.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   return {state_.device, targets_ledger_, name, description};
 }
 
@@ -274,6 +279,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
                                  state_.constants,
                                  geometry_,
                                  request_.visibility ? &visibility_samples_ : nullptr,
+                                 &light_sum_,
                                  bindings,
                                  index,
                                  notes_};
@@ -411,6 +417,8 @@ void FrameRun::add_shared_memory(vulkan::MemoryLedger& memory) const {
          reference::Intersector::of(state_.device, setup_.scene).memory())
       memory.add(part.name, part.bytes);
   if (adjacency) memory.add("adjacency", setup_.scene.adjacency(state_.device).indices.size());
+  for (const ResourceCost& target : targets_ledger_.entries)
+    if (target.name == "light sums") memory.add(target.name, target.bytes);
   if (!stencil) return;
   // A format with stencil may hold padding too: all that it takes over depth alone is the price.
   const std::uint64_t depth_bytes = std::uint64_t{setup_.width} * setup_.height * sizeof(float);

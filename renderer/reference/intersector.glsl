@@ -55,7 +55,9 @@ struct TrianglePlanes {
   vec4 beyond;
 };
 
-float at(vec4 plane, vec3 p) { return plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w; }
+float at(vec4 plane, vec3 p) {
+  return fma(plane.z, p.z, fma(plane.y, p.y, fma(plane.x, p.x, plane.w)));
+}
 
 // The plane through x, b and c. Swapping b and c gives the exact negative, so that a ray on an edge
 // which two triangles share is caught by one of them (as Embree's Pluecker test does).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace penumbra::reference {
 namespace {
@@ -11,6 +12,14 @@ constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch)
 /// Distance of a receiver from its facet, per metre of the scene's diagonal: rounding of positions
 /// is below 1e-6 of it.
 constexpr float receiver_offset = 2e-5f;
+
+/// Lists of occluders: places of a sample, and what all lists of a light may take together.
+constexpr std::uint64_t most_occluders = 64;
+constexpr std::uint64_t least_occluders = 8;
+constexpr std::uint64_t occluder_bytes = 96u << 20;
+
+/// Behind the two counts of each set: samples with more occluders than places.
+constexpr std::uint32_t overflow_place = 2 * shader::max_supersampling;
 
 struct Box {
   glm::dvec3 low, high;
@@ -42,15 +51,17 @@ void widen(Box& box, bool directional, const GpuScene& scene) {
   box.high += 1e-6 * reach;
 }
 
+std::span<const glm::vec4> points_of(const PrepareContext& context, std::uint32_t set) {
+  return context.points.subspan(std::size_t{set} * batch_size, batch_size);
+}
+
 /// For the points of one sample of a pixel.
 shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   shader::ShaftData data{};
   const bool directional = context.light.kind == LightKind::directional;
-  const auto points = context.points.subspan(std::size_t{set} * batch_size, batch_size);
+  const auto points = points_of(context, set);
   Box batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
-  for (std::uint32_t i = 0; i < batch_size; ++i) {
-    data.points[i] = points[i];
-    if (i >= context.points_in_batch) continue;
+  for (std::uint32_t i = 0; i < context.points_in_batch; ++i) {
     batch.low = glm::min(batch.low, glm::dvec3(points[i]));
     batch.high = glm::max(batch.high, glm::dvec3(points[i]));
   }
@@ -77,50 +88,149 @@ vulkan::Image make_image(PrepareContext& context, const char* name, std::uint32_
   return {context.device, context.memory, name, description};
 }
 
+std::uint32_t set_count(const PrepareContext& context) {
+  return static_cast<std::uint32_t>(context.points.size()) / batch_size;
+}
+
 }  // namespace
 
 void OcclusionMask::trace(PrepareContext& context) {
-  const bool with_candidates = context.batches > 1;
-  if (!mask_) create_images(context, with_candidates);
-  if (with_candidates && context.batch == 0)
-    dispatch(context, "find occluders", "#define FIND_CANDIDATES\n", false);
-  dispatch(context, "occlusion mask", "", with_candidates);
+  // One batch is not worth a look at the whole light first.
+  const bool many = context.batches > 1;
+  if (!mask_) create(context, many);
+  if (!many) {
+    dispatch_sets(context, "occlusion mask", "", nullptr);
+    return;
+  }
+  if (context.batch == 0) {
+    find_samples(context);
+    list_occluders(context);
+  }
+  if (occluder_limit_ > 0)
+    dispatch_sets(context, "occlusion mask", "#define OCCLUDERS_LISTED\n", &partly_lit_);
+  if (occluder_limit_ == 0 || overflowed_ > 0)
+    dispatch_sets(context, "occlusion mask",
+                  occluder_limit_ > 0 ? "#define WITH_CANDIDATES\n#define SOME_OCCLUDERS_LISTED\n"
+                                      : "#define WITH_CANDIDATES\n",
+                  &partly_lit_);
 }
 
-void OcclusionMask::create_images(PrepareContext& context, bool with_candidates) {
+void OcclusionMask::create(PrepareContext& context, bool many) {
   mask_ = make_image(context, "occlusion mask", 1);
-  if (with_candidates) candidates_ = make_image(context, "occluder range", 2);
+  if (!many) return;
+  candidates_ = make_image(context, "occluder range", 2);
+  const VkDeviceSize samples = VkDeviceSize{context.geometry.width} * context.geometry.height;
+  lit_.texels = {context.device, context.memory, "sample list", samples * sizeof(std::uint32_t),
+                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+  found_ = {context.device,
+            context.memory,
+            "sample counts",
+            (overflow_place + 1) * sizeof(std::uint32_t),
+            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+            vulkan::MemoryKind::readback};
 }
 
-void OcclusionMask::dispatch(PrepareContext& context, const std::string& name,
-                             const std::string& preamble, bool has_candidates) {
+/// Lists the samples that part and all of the light reaches.
+void OcclusionMask::find_samples(PrepareContext& context) {
+  std::memset(found_.mapped(), 0, found_.size());
+  dispatch_sets(context, "find occluders", "#define FIND_CANDIDATES\n", nullptr);
+  // The counts say how much the passes to come have to do.
+  context.recorder.flush();
+  const std::uint32_t capacity =
+      context.geometry.width * context.geometry.height / set_count(context);
+  partly_lit_.clear();
+  lit_.ranges.clear();
+  for (std::uint32_t set = 0; set < set_count(context); ++set) {
+    const std::uint32_t fully = found(2 * set + 1);
+    partly_lit_.push_back({set, set * capacity, found(2 * set)});
+    lit_.ranges.push_back(partly_lit_.back());
+    lit_.ranges.push_back({set, (set + 1) * capacity - fully, fully, true});
+  }
+}
+
+/// Writes down what may hide the light from each sample that part of it reaches.
+void OcclusionMask::list_occluders(PrepareContext& context) {
+  std::uint64_t samples = 0;
+  for (const SampleList::Range& range : partly_lit_) samples += range.count;
+  occluder_limit_ = 0;
+  overflowed_ = 0;
+  // A walk in parts would have to go on where a list ends: not worth it.
+  if (samples == 0 ||
+      Intersector::of(context.device, context.scene).node_count() > nodes_per_range_)
+    return;
+  const std::uint64_t places = occluder_bytes / sizeof(std::uint32_t) / samples;
+  occluder_limit_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(most_occluders, places));
+  if (occluder_limit_ <= least_occluders) {
+    occluder_limit_ = 0;
+    return;
+  }
+  --occluder_limit_;  // a place for the count
+  const VkDeviceSize bytes = samples * (occluder_limit_ + 1) * sizeof(std::uint32_t);
+  if (occluders_.size() < bytes) {
+    occluders_ = {};
+    occluders_ = {context.device, context.memory, "occluder lists", bytes,
+                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+  }
+  dispatch_sets(context, "list occluders", "#define LIST_OCCLUDERS\n#define WITH_CANDIDATES\n",
+                &partly_lit_);
+  context.recorder.flush();
+  overflowed_ = found(overflow_place);
+}
+
+std::uint32_t OcclusionMask::found(std::uint32_t place) const {
+  std::uint32_t value = 0;
+  std::memcpy(&value, static_cast<const char*>(found_.mapped()) + place * sizeof(value),
+              sizeof(value));
+  return value;
+}
+
+/// Runs a variant of the program at the ranges of a list, one for each set, or at all samples.
+void OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& name,
+                                  std::string defines,
+                                  const std::vector<SampleList::Range>* ranges) {
   const Intersector& intersector = Intersector::of(context.device, context.scene);
-  std::string defines = preamble;
   if (intersector.has_holes()) defines += "#define WITH_HOLES\n";
-  if (has_candidates) defines += "#define WITH_CANDIDATES\n";
+  if (ranges != nullptr) defines += "#define WITH_SAMPLE_LIST\n";
   const vulkan::Pipeline& pipeline =
       context.pipelines.compute("renderer/reference/occlusion_mask.comp", defines);
   vulkan::Bindings bindings = context.frame_bindings;
   intersector.bind(bindings);
   bindings.storage_image("occlusion_mask", mask_);
   if (candidates_) bindings.storage_image("candidates", candidates_);
-  const auto sets = static_cast<std::uint32_t>(context.points.size()) / batch_size;
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(sets)));
+  if (lit_.texels) bindings.buffer("SampleBlock", lit_.texels.whole());
+  if (found_) bindings.buffer("FoundBlock", found_.whole());
+  if (occluders_) bindings.buffer("OccluderBlock", occluders_.whole());
+  SampleWork work;
+  work.occluder_limit = occluder_limit_;
+  work.overflow_place = overflow_place;
+  for (const SampleList::Range& range : partly_lit_) work.stride += range.count;
   context.pass(name, [&](vulkan::Commands& commands) {
-    for (std::uint32_t set = 0; set < sets; ++set) {
+    for (std::uint32_t set = 0; set < set_count(context); ++set) {
       bindings.buffer("ShaftBlock", context.constants.push(shaft_data(context, set)));
-      std::uint32_t first = 0;
-      do {
-        if (first > 0) commands.barrier();
-        const std::uint32_t end = std::min(first + nodes_per_range_, intersector.node_count());
-        commands.bind(pipeline, bindings);
-        commands.constants(glm::uvec4(first, end, set, 0));
-        commands.dispatch((context.geometry.width / side + 7) / 8,
-                          (context.geometry.height / side + 7) / 8);
-        first = end;
-      } while (first < intersector.node_count());
+      bindings.buffer("LightPointBlock", context.constants.push_array(points_of(context, set)));
+      commands.bind(pipeline, bindings);
+      work.set = set;
+      walk(context, commands, ranges == nullptr ? nullptr : &(*ranges)[set], work);
+      if (ranges != nullptr) work.slot += (*ranges)[set].count;
     }
   });
+}
+
+/// Dispatches the bound program, several times where the hierarchy is too large for one walk.
+void OcclusionMask::walk(const PrepareContext& context, vulkan::Commands& commands,
+                         const SampleList::Range* range, SampleWork work) const {
+  const std::uint32_t nodes = Intersector::of(context.device, context.scene).node_count();
+  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(set_count(context))));
+  do {
+    if (work.first_node > 0) commands.barrier();
+    work.end_node = std::min(work.first_node + nodes_per_range_, nodes);
+    work.last = work.end_node == nodes ? 1 : 0;
+    if (range != nullptr)
+      dispatch_range(commands, *range, work);
+    else
+      dispatch_all(commands, context.geometry.width, context.geometry.height, side, work);
+    work.first_node = work.end_node;
+  } while (work.first_node < nodes);
 }
 
 void OcclusionMask::bind(vulkan::Bindings& bindings) const {

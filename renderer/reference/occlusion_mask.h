@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/frame/prepare_context.h"
+#include "renderer/frame/sample_list.h"
 #include "renderer/reference/intersector.h"
 
 namespace penumbra::reference {
@@ -16,8 +17,9 @@ class OcclusionMask {
   explicit OcclusionMask(std::uint32_t nodes_per_range = default_range)
       : nodes_per_range_(nodes_per_range) {}
 
-  /// Records the passes for the context's batch. The first of several batches also finds, for every
-  /// sample, where in the hierarchy there is anything that may hide any part of the light.
+  /// Records the passes for the context's batch. The first of several batches also proves samples
+  /// fully lit or fully dark, and finds for the others where in the hierarchy there is anything
+  /// that may hide any part of the light.
   void trace(PrepareContext& context);
 
   /// What renderer/reference/occlusion_mask.glsl reads.
@@ -25,14 +27,28 @@ class OcclusionMask {
 
   const vulkan::Image& image() const { return mask_; }  ///< R32_UINT, samples of the frame
 
+  /// Samples that part or all of the light reaches, once there was a first of several batches.
+  const SampleList* lit_samples() const { return lit_.texels ? &lit_ : nullptr; }
+
  private:
-  void create_images(PrepareContext& context, bool with_candidates);
-  void dispatch(PrepareContext& context, const std::string& name, const std::string& preamble,
-                bool has_candidates);
+  void create(PrepareContext& context, bool many);
+  void find_samples(PrepareContext& context);
+  void list_occluders(PrepareContext& context);
+  std::uint32_t found(std::uint32_t place) const;
+  void dispatch_sets(PrepareContext& context, const std::string& name, std::string defines,
+                     const std::vector<SampleList::Range>* ranges);
+  void walk(const PrepareContext& context, vulkan::Commands& commands,
+            const SampleList::Range* range, SampleWork work) const;
 
   std::uint32_t nodes_per_range_;
   vulkan::Image mask_;
   vulkan::Image candidates_;  ///< two layers: first node and end of what may hide any of the light
+  SampleList lit_;
+  std::vector<SampleList::Range> partly_lit_;  ///< the part of the list that rays are needed for
+  vulkan::Buffer found_;                       ///< lengths of the lists, written by the device
+  vulkan::Buffer occluders_;                   ///< triangles for each sample of that part
+  std::uint32_t occluder_limit_ = 0;           ///< most triangles of a sample; 0: none are listed
+  std::uint32_t overflowed_ = 0;               ///< samples with more
 };
 
 }  // namespace penumbra::reference

@@ -1,5 +1,5 @@
-// Fragment stage that adds one light, or one batch of its points, to the frame. The program is this
-// file followed by the technique's, which defines calculate_shadow.
+// Fragment stage that adds one light to the frame. The program is this file followed by the
+// technique's, which defines calculate_shadow. For lights of many points see shade_points.glsl.
 #include "renderer/shaders/shadow_query.glsl"
 
 float calculate_shadow(ShadowQuery query);
@@ -17,50 +17,17 @@ void main() {
   vec4 position = texelFetch(geometry_position, texel, 0);
   if (position.w == 0.0) discard;
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
-
-  int first = sample_of_pixel(gl_FragCoord.xy) * points_per_batch;
-  vec3 center = int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
-  ShadowQuery query;
-  query.position = surface.position;
-  query.normal = surface.geometric_normal;
-  query.shading_normal = surface.shading_normal;
-  query.pixel = gl_FragCoord.xy;
-
-  Illumination from_center = illuminate(light, center, surface.position);
-  bool judged = from_center.strength > 0.0 && dot(surface.geometric_normal, from_center.to_light) > 0.0 &&
-                dot(surface.shading_normal, from_center.to_light) > 0.0;
+  Illumination incoming = illuminate(light, light_center(), surface.position);
+  bool judged = is_judged(surface, incoming);
   vec3 radiance = vec3(0.0);
   float visible = 0.0;
-#ifdef MANY_POINTS
-  vec3 unshadowed = reflect_light(light, from_center, surface);
-  int count = int(light.cone.z);
-  for (int i = 0; i < count; ++i) {
-    Illumination incoming = illuminate(light, light_points[first + i].xyz, surface.position);
-    query.to_light = incoming.to_light;
-    query.light_distance = incoming.distance;
-    query.point = i;
-    float visibility = calculate_shadow(query);
-    visible += visibility;
-#ifdef SHADE_EACH_POINT
-    if (visibility > 0.0) radiance += visibility * reflect_light(light, incoming, surface);
-#else
-    radiance += visibility * unshadowed;
-#endif
-  }
-  radiance /= float(count);
-  visible /= float(count);
-#else
   // Nothing is asked of the technique where the light adds nothing anyway.
   if (judged) {
-    query.to_light = from_center.to_light;
-    query.light_distance = from_center.distance;
-    query.point = 0;
-    visible = calculate_shadow(query);
-    radiance = visible * reflect_light(light, from_center, surface);
+    visible = calculate_shadow(make_query(surface, incoming, gl_FragCoord.xy, 0));
+    radiance = visible * reflect_light(light, incoming, surface);
   }
-#endif
-  out_radiance = vec4(radiance * light.cone.w, 0.0);
+  out_radiance = vec4(radiance, 0.0);
 #ifdef WITH_VISIBILITY
-  out_visibility = judged ? vec2(visible, 1.0) * light.cone.w : vec2(0.0);
+  out_visibility = judged ? vec2(visible, 1.0) : vec2(0.0);
 #endif
 }

@@ -40,7 +40,7 @@ struct LightData {
   vec4 position;   // xyz world, w kind
   vec4 direction;  // xyz from the light into the scene, w range in m (0 unlimited)
   vec4 color;      // rgb colour times intensity, w 1 for inverse-square attenuation
-  vec4 cone;       // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight
+  vec4 cone;       // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight of a point
   vec4 extent;     // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half height
   vec4 right;      // xyz unit, along a rectangle's width
   vec4 up;         // xyz unit, along its height
@@ -72,10 +72,9 @@ struct MapData {
   vec4 texel;  // x map size, y kernel radius in texels, z constant bias in m, w slope scale
 };
 
-/// Light points of one batch and sample of a pixel, and the boxes that hold them: positions, or
-/// directions that need not be unit.
+/// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions that
+/// need not be unit.
 struct ShaftData {
-  vec4 points[points_per_batch];
   vec4 box_low;     // box of the batch; w 1 for positions, 0 for directions
   vec4 box_high;    // w distance that receivers are moved along their normal, m
   vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre, m

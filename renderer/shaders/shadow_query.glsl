@@ -1,12 +1,10 @@
 // The question a technique answers: how much of the light reaches this point?
 #ifndef PENUMBRA_SHADOW_QUERY_GLSL
 #define PENUMBRA_SHADOW_QUERY_GLSL
+#include "renderer/shaders/light_points.glsl"
 #include "renderer/shaders/lighting.glsl"
 
 layout(std140) uniform LightBlock { LightData light; };
-// Points of this batch: positions, or unit directions to a directional light.
-// Sample s of a pixel uses [s * points_per_batch, (s + 1) * points_per_batch).
-layout(std140) uniform LightPointBlock { vec4 light_points[points_per_batch * max_supersampling]; };
 
 struct ShadowQuery {
   vec3 position;         // receiver, world
@@ -18,10 +16,26 @@ struct ShadowQuery {
   int point;             // index within the batch, 0 .. points_per_batch - 1
 };
 
-// Index of this sample within its pixel, 0 .. samples per pixel - 1.
-int sample_of_pixel(vec2 pixel) {
-  int side = int(frame.size.z);
-  ivec2 p = ivec2(pixel) % side;
-  return p.y * side + p.x;
+vec3 light_center() {
+  return int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
+}
+
+// Whether the surface faces the light's centre and is inside its cone: where visibility means
+// something.
+bool is_judged(Surface surface, Illumination from_center) {
+  return from_center.strength > 0.0 && dot(surface.geometric_normal, from_center.to_light) > 0.0 &&
+         dot(surface.shading_normal, from_center.to_light) > 0.0;
+}
+
+ShadowQuery make_query(Surface surface, Illumination incoming, vec2 pixel, int point) {
+  ShadowQuery query;
+  query.position = surface.position;
+  query.normal = surface.geometric_normal;
+  query.shading_normal = surface.shading_normal;
+  query.to_light = incoming.to_light;
+  query.light_distance = incoming.distance;
+  query.pixel = pixel;
+  query.point = point;
+  return query;
 }
 #endif

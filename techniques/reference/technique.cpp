@@ -17,6 +17,7 @@ class Reference : public Technique {
   }
   void prepare(PrepareContext& context) override { mask_.trace(context); }
   void bind(vulkan::Bindings& bindings) const override { mask_.bind(bindings); }
+  const SampleList* lit_samples() const override { return mask_.lit_samples(); }
 
  private:
   reference::OcclusionMask mask_;
