@@ -99,7 +99,10 @@ void SoftVolumes::draw_wedges(PrepareContext& context, bool clamp) {
   const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
   vulkan::Bindings bindings = context.frame_bindings;
   bindings.buffer("CoverageBlock", table_.whole());
-  const VolumeDraws draws = list_volume_draws(context, false, clamp, light_radius(context.light));
+  VolumeDrawOptions wanted;
+  wanted.clamp = clamp;
+  wanted.light_radius = light_radius(context.light);
+  const VolumeDraws draws = list_volume_draws(context, wanted);
   vulkan::RenderTargets targets;
   targets.width = context.geometry.width;
   targets.height = context.geometry.height;

@@ -1,5 +1,6 @@
 #include "renderer/shadow_volumes/stencil_volumes.h"
 
+#include "renderer/shadow_volumes/near_plane.h"
 #include "renderer/shadow_volumes/volume_draws.h"
 
 namespace penumbra::shadow_volumes {
@@ -14,8 +15,10 @@ vulkan::GraphicsState stencil_state(const PrepareContext& context, const VolumeO
   // A crossing at the very depth of the surface counts as behind it.
   state.depth_compare = VK_COMPARE_OP_GREATER;
   // A perspective view has its far plane at infinity and needs no clamp; without one, triangles are
-  // clipped just as they were when the depth was drawn. A parallel view ends somewhere.
-  state.depth_clamp = context.input.camera.projection == Projection::orthographic;
+  // clipped just as they were when the depth was drawn. A parallel view ends somewhere, and what is
+  // behind its end counts.
+  state.depth_clamp = options.counting == Counting::behind &&
+                      context.input.camera.projection == Projection::orthographic;
   state.stencil_test = true;
   if (options.counting == Counting::behind) {
     state.stencil_front.depth_fail = VK_STENCIL_OP_DECREMENT_AND_WRAP;
@@ -38,7 +41,7 @@ void note_ignored_masks(PrepareContext& context) {
 
 }  // namespace
 
-std::vector<Parameter> volume_parameters() {
+Parameter clamp_parameter() {
   Parameter clamp;
   clamp.name = "clamp";
   clamp.type = ParameterType::boolean;
@@ -46,7 +49,27 @@ std::vector<Parameter> volume_parameters() {
   clamp.meaning =
       "Culls casters that cannot shadow anything visible and ends volumes behind the last visible "
       "surface instead of at infinity.";
-  return {clamp};
+  return clamp;
+}
+
+std::vector<Parameter> volume_parameters() {
+  Parameter passes;
+  passes.name = "stencil_passes";
+  passes.type = ParameterType::integer;
+  passes.default_value = std::int64_t{1};
+  passes.minimum = 1;
+  passes.maximum = 2;
+  passes.meaning =
+      "1: front and back faces of volumes are counted in one pass by a two-sided stencil. 2: in a "
+      "pass each, as before there was one.";
+  return {clamp_parameter(), passes};
+}
+
+VolumeOptions volume_options(const ParameterValues& parameters) {
+  VolumeOptions options;
+  options.clamp = boolean_of(parameters, "clamp");
+  options.stencil_passes = static_cast<int>(integer_of(parameters, "stencil_passes"));
+  return options;
 }
 
 Diagnostic count_diagnostic() {
@@ -55,13 +78,27 @@ Diagnostic count_diagnostic() {
           "count that fell below nought."};
 }
 
-void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
-  stencil_ = &context.geometry.depth;
-  note_ignored_masks(context);
+/// A draw of some casters with one state.
+struct StencilVolumes::Step {
+  const vulkan::Pipeline* pipeline;
+  vulkan::Bindings bindings;
+  const VolumeDraws* draws;
+  VkCullModeFlags cull;
+};
+
+void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& options,
+                               const VolumeDraws& draws, std::vector<Step>& steps) {
+  const auto add = [&](const vulkan::Pipeline& pipeline) {
+    if (options.stencil_passes == 1) {
+      steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_NONE});
+      return;
+    }
+    steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_BACK_BIT});
+    steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_FRONT_BIT});
+  };
   vulkan::ProgramSource source =
       volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
-  vulkan::GraphicsState state = stencil_state(context, options);
-  std::vector<const vulkan::Pipeline*> pipelines;
+  const vulkan::GraphicsState state = stencil_state(context, options);
   if (options.counting == Counting::behind) source.preamble += "#define WITH_CAPS\n";
   if (options.exact_sides) {
     vulkan::ProgramSource sides =
@@ -72,10 +109,60 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
     every_depth.depth_test = false;
     every_depth.stencil_front.pass = state.stencil_front.depth_fail;
     every_depth.stencil_back.pass = state.stencil_back.depth_fail;
-    pipelines.push_back(&context.pipelines.graphics(sides, every_depth));
+    add(context.pipelines.graphics(sides, every_depth));
     source.preamble += "#define CAPS_ONLY\n";
   }
-  pipelines.push_back(&context.pipelines.graphics(source, state));
+  add(context.pipelines.graphics(source, state));
+}
+
+void StencilVolumes::add_near_caps(PrepareContext& context, const VolumeOptions& options,
+                                   const NearPlane& near_plane, const VolumeDraws& draws,
+                                   std::vector<Step>& steps) {
+  const auto near_from_caster = near_plane.near_from_caster();
+  if (!near_from_caster) return;
+  vulkan::GraphicsState state = stencil_state(context, options);
+  state.depth_test = false;
+  state.depth_clamp = false;
+  state.stencil_front.pass = state.stencil_back.pass = VK_STENCIL_OP_INCREMENT_AND_WRAP;
+  vulkan::Bindings bindings = context.frame_bindings;
+  bindings.buffer("NearPlaneBlock", context.constants.push(*near_from_caster));
+  const auto source = volume_program("renderer/shadow_volumes/near_cap.geom", options.every_edge);
+  steps.push_back(
+      {&context.pipelines.graphics(source, state), bindings, &draws, VK_CULL_MODE_NONE});
+}
+
+void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
+  stencil_ = &context.geometry.depth;
+  note_ignored_masks(context);
+  const NearPlane near_plane(context);
+  const auto in_shadow = [&](const glm::vec3& low, const glm::vec3& high) {
+    return near_plane.may_be_in_shadow_of(low, high);
+  };
+  VolumeDrawOptions wanted;
+  wanted.every_edge = options.every_edge;
+  wanted.clamp = options.clamp;
+  wanted.light_radius = options.light_radius;
+  VolumeDraws draws, outside, shading_camera;
+  std::vector<Step> steps;
+  if (options.automatic) {
+    VolumeOptions before = options;
+    before.counting = Counting::before;
+    wanted.accept = [&](const glm::vec3& low, const glm::vec3& high) {
+      return !in_shadow(low, high);
+    };
+    outside = list_volume_draws(context, wanted);
+    add_steps(context, before, outside, steps);
+    wanted.accept = in_shadow;
+  }
+  draws = list_volume_draws(context, wanted);
+  add_steps(context, options, draws, steps);
+  if (options.near_caps) {
+    // Caps need not be clamped or culled but for the pyramid between light and near plane.
+    wanted.clamp = false;
+    wanted.accept = in_shadow;
+    shading_camera = list_volume_draws(context, wanted);
+    add_near_caps(context, options, near_plane, shading_camera, steps);
+  }
 
   vulkan::RenderTargets targets;
   targets.width = context.geometry.width;
@@ -83,13 +170,12 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   targets.depth = context.geometry.depth.slice(0);
   targets.depth_format = context.geometry.depth.description().format;
   targets.clear_stencil = true;
-  const VolumeDraws draws =
-      list_volume_draws(context, options.every_edge, options.clamp, options.light_radius);
   context.pass("volumes", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
-    for (const vulkan::Pipeline* pipeline : pipelines) {
-      commands.bind(*pipeline, context.frame_bindings);
-      draws.record(commands, context.scene);
+    for (const Step& step : steps) {
+      commands.bind(*step.pipeline, step.bindings);
+      commands.cull(step.cull);
+      step.draws->record(commands, context.scene);
     }
     commands.end_rendering();
   });

@@ -4,13 +4,18 @@
 
 namespace penumbra::shadow_volumes {
 
+class NearPlane;
+struct VolumeDraws;
+
 /// Which crossings of a volume's surface along the view ray are counted.
 enum class Counting {
   behind,  ///< z-fail: those behind the visible surface. Right wherever the camera stands
   before,  ///< z-pass: those between camera and surface. Wrong when the camera is in a volume
 };
 
-/// Parameters of every technique that counts volumes: clamp.
+Parameter clamp_parameter();
+
+/// Parameters of every technique that counts volumes: clamp, stencil_passes.
 std::vector<Parameter> volume_parameters();
 
 /// The count of volumes as a picture, from picture_of_count.
@@ -23,6 +28,14 @@ struct VolumeOptions {
   /// Leave out casters that provably cannot shadow anything visible, and end volumes behind
   /// everything that is.
   bool clamp = false;
+  /// With Counting::before: count the volumes that the near plane lies in first, so that the count
+  /// is right wherever the camera stands (z-pass+).
+  bool near_caps = false;
+  /// With Counting::behind: count before the surface those casters whose shadow cannot reach the
+  /// near plane.
+  bool automatic = false;
+  /// 1: front and back faces in one pass by two-sided stencil; 2: a pass each.
+  int stencil_passes = 1;
   /// Decide by the sides' own planes, not by the rasteriser's depths, whether they are crossed
   /// behind the surface, as penumbra wedges decide it. Only for Counting::behind.
   bool exact_sides = false;
@@ -30,6 +43,9 @@ struct VolumeOptions {
   /// tangent of the angle when directional.
   double light_radius = 0.0;
 };
+
+/// Options that parameters of volume_parameters stand for.
+VolumeOptions volume_options(const ParameterValues& parameters);
 
 /// Shadow volumes from the centre of a light, counted in the geometry buffer's stencil: 0 where the
 /// light arrives. What all volume techniques are composed from. Needs stencil and adjacency.
@@ -42,6 +58,13 @@ class StencilVolumes {
   void bind(vulkan::Bindings& bindings) const;
 
  private:
+  struct Step;
+  void add_steps(PrepareContext& context, const VolumeOptions& options, const VolumeDraws& draws,
+                 std::vector<Step>& steps);
+  void add_near_caps(PrepareContext& context, const VolumeOptions& options,
+                     const NearPlane& near_plane, const VolumeDraws& draws,
+                     std::vector<Step>& steps);
+
   const vulkan::Image* stencil_ = nullptr;
 };
 

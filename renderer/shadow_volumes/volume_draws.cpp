@@ -15,17 +15,17 @@ void VolumeDraws::record(vulkan::Commands& commands, const GpuScene& scene) cons
   }
 }
 
-VolumeDraws list_volume_draws(const PrepareContext& context, bool every_edge, bool clamp,
-                              double light_radius) {
-  const VolumeBounds bounds(context, light_radius);
+VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOptions& options) {
+  const VolumeBounds bounds(context, options.light_radius);
   const float reach = 1e4f * glm::length(context.scene.high() - context.scene.low());
   VolumeDraws list;
-  list.indices = every_edge ? &context.scene.index_buffer() : &context.adjacency->indices;
+  list.indices = options.every_edge ? &context.scene.index_buffer() : &context.adjacency->indices;
   const auto add = [&](const auto& part, bool every_triangle) {
     if (!part.casts_shadow) return;
+    if (options.accept && !options.accept(part.low, part.high)) return;
     VolumeDraws::Draw draw{
         part.first_index, part.index_count, {glm::vec4(0.0f), reach, every_triangle ? 1u : 0u}};
-    if (clamp) {
+    if (options.clamp) {
       if (!bounds.may_shadow(part.low, part.high)) return;
       draw.constants.end_plane = bounds.end_plane(part.low, part.high).value_or(glm::vec4(0.0f));
     }
@@ -40,7 +40,7 @@ VolumeDraws list_volume_draws(const PrepareContext& context, bool every_edge, bo
     }
     list.draws.push_back(draw);
   };
-  if (every_edge)
+  if (options.every_edge)
     for (const DrawRange& range : context.scene.ranges()) add(range, false);
   else
     for (const AdjacencyGroup& group : context.adjacency->host.groups) add(group, !group.closed);

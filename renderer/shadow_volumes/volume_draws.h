@@ -25,12 +25,20 @@ struct VolumeDraws {
   void record(vulkan::Commands& commands, const GpuScene& scene) const;
 };
 
-/// `every_edge`: plain triangles instead of ones with adjacency. `clamp`: casters that cannot
-/// shadow anything visible are left out, and volumes end behind everything visible. `light_radius`:
-/// of the sphere around the light from which shadows are thrown, m (tangent of the angle when
-/// directional).
-VolumeDraws list_volume_draws(const PrepareContext& context, bool every_edge, bool clamp,
-                              double light_radius);
+struct VolumeDrawOptions {
+  /// Plain triangles instead of ones with adjacency.
+  bool every_edge = false;
+  /// Leave out casters that cannot shadow anything visible, and end volumes behind everything that
+  /// is.
+  bool clamp = false;
+  /// Radius of the sphere around the light from which shadows are thrown, m (tangent of the angle
+  /// when directional).
+  double light_radius = 0.0;
+  /// Casters that are drawn, by their box; all where this is empty.
+  std::function<bool(const glm::vec3& low, const glm::vec3& high)> accept;
+};
+
+VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOptions& options);
 
 /// Program stages and topology that all volumes begin with.
 vulkan::ProgramSource volume_program(const std::string& geometry_shader, bool every_edge);

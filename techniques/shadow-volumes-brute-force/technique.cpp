@@ -11,8 +11,8 @@ class BruteForceShadowVolumes : public Technique {
     needs.stencil = true;
   }
   void prepare(PrepareContext& context) override {
-    shadow_volumes::VolumeOptions options;
-    options.clamp = boolean_of(context.input.parameters, "clamp");
+    shadow_volumes::VolumeOptions options =
+        shadow_volumes::volume_options(context.input.parameters);
     options.every_edge = true;
     options.counting = shadow_volumes::Counting::before;
     volumes_.draw(context, options);

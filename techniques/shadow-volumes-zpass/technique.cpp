@@ -13,8 +13,8 @@ class ShadowVolumesZPass : public Technique {
     needs.adjacency = true;
   }
   void prepare(PrepareContext& context) override {
-    shadow_volumes::VolumeOptions options;
-    options.clamp = boolean_of(context.input.parameters, "clamp");
+    shadow_volumes::VolumeOptions options =
+        shadow_volumes::volume_options(context.input.parameters);
     options.counting = shadow_volumes::Counting::before;
     volumes_.draw(context, options);
   }

@@ -12,8 +12,9 @@ class ShadowVolumes : public Technique {
     needs.adjacency = true;
   }
   void prepare(PrepareContext& context) override {
-    shadow_volumes::VolumeOptions options;
-    options.clamp = boolean_of(context.input.parameters, "clamp");
+    shadow_volumes::VolumeOptions options =
+        shadow_volumes::volume_options(context.input.parameters);
+    options.automatic = choice_of(context.input.parameters, "counting") == "automatic";
     volumes_.draw(context, options);
   }
   void bind(vulkan::Bindings& bindings) const override { volumes_.bind(bindings); }
@@ -26,6 +27,15 @@ class ShadowVolumes : public Technique {
 
 TechniqueDescription describe_shadow_volumes();
 TechniqueDescription describe_shadow_volumes() {
+  Parameter counting;
+  counting.name = "counting";
+  counting.type = ParameterType::choice;
+  counting.choices = {"behind", "automatic"};
+  counting.default_value = std::string("behind");
+  counting.meaning =
+      "behind: all volumes are counted behind the surface (z-fail). automatic: before it (z-pass) "
+      "where the caster's shadow provably does not reach the camera's near plane.";
+
   TechniqueDescription description;
   description.id = "shadow-volumes";
   description.label = "SV";
@@ -33,6 +43,7 @@ TechniqueDescription describe_shadow_volumes() {
   description.family = "volume";
   description.source = "van Sambeek 2007, 2.4.3 and 3.2.4; Everitt and Kilgard 2002";
   description.parameters = shadow_volumes::volume_parameters();
+  description.parameters.push_back(counting);
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
   description.create = [] { return std::make_unique<ShadowVolumes>(); };

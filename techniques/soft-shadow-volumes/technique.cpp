@@ -7,6 +7,7 @@ namespace {
 class SoftShadowVolumes : public Technique {
  public:
   void require(const TechniqueInput&, Requirements& needs) override {
+    needs.casters = CasterUse::beam;
     needs.stencil = true;
     needs.adjacency = true;
   }
@@ -65,7 +66,7 @@ TechniqueDescription describe_soft_shadow_volumes() {
   description.source =
       "van Sambeek 2007, 2.4.7 and 3.2.4; Akenine-Moeller and Assarsson 2002; Assarsson and "
       "Akenine-Moeller 2003";
-  description.parameters = shadow_volumes::volume_parameters();
+  description.parameters = {shadow_volumes::clamp_parameter()};
   description.parameters.push_back(table_size);
   description.parameters.push_back(accumulation);
   description.parameters.push_back(overlap);

@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(LightKind::spot, LightKind::point, LightKind::directional),
                      testing::Values(Projection::perspective, Projection::orthographic),
                      testing::Values("shadow-volumes", "shadow-volumes-zpass",
-                                     "shadow-volumes-brute-force")));
+                                     "shadow-volumes-zpass-plus", "shadow-volumes-brute-force")));
 
 class BuiltInScenes : public testing::TestWithParam<const char*> {};
 
@@ -140,13 +140,108 @@ double agreement(const RenderResult& a, const RenderResult& b) {
   return alike / judged;
 }
 
-TEST(ShadowVolumes, z_pass_inverts_where_the_camera_is_in_a_volume_and_z_fail_does_not) {
+TEST(ShadowVolumes, z_pass_inverts_where_the_camera_is_in_a_volume_and_others_do_not) {
   const Scene scene = *scenes::load("camera-in-volume");
   const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
   EXPECT_GT(agreement(draw(scene, "shadow-volumes"), rays), 0.999);
+  EXPECT_GT(agreement(draw(scene, "shadow-volumes-zpass-plus"), rays), 0.999);
   EXPECT_LT(agreement(draw(scene, "shadow-volumes-zpass"), rays), 0.5);
   const RenderResult rays_aside = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}}, "side");
   EXPECT_GT(agreement(draw(scene, "shadow-volumes-zpass", {}, "side"), rays_aside), 0.999);
+}
+
+/// Something hangs between light and camera, so near that its shadow ends within the near plane.
+Scene near_plane_half_shadowed(LightKind kind, Projection projection) {
+  Scene scene = floating_box(kind, projection);
+  Camera& camera = scene.cameras[0];
+  camera.near_plane = 0.4;
+  const glm::dvec3 forward = glm::normalize(camera.target - camera.position);
+  const glm::dvec3 to_light = kind == LightKind::directional
+                                  ? -scene.lights[0].direction
+                                  : glm::normalize(scene.lights[0].position - camera.position);
+  Instance pole = scene.instances[1];
+  // A box a third as wide as what is seen there, towards the light from the middle of the near
+  // plane.
+  const double scale = projection == Projection::perspective ? 0.25 : 1.4;
+  pole.world_from_object = glm::translate(glm::dmat4(1.0), camera.position + 0.4 * forward +
+                                                               (0.4 + 0.8 * scale) * to_light) *
+                           glm::scale(glm::dmat4(1.0), glm::dvec3(scale)) *
+                           glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -0.7, 0.0));
+  scene.instances.push_back(pole);
+  return scene;
+}
+
+class NearPlanes : public testing::TestWithParam<std::tuple<LightKind, Projection>> {};
+
+TEST_P(NearPlanes, may_lie_partly_in_shadow_but_for_z_pass) {
+  const auto [kind, projection] = GetParam();
+  const Scene scene = near_plane_half_shadowed(kind, projection);
+  const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
+  EXPECT_LT(agreement(draw(scene, "shadow-volumes-zpass"), rays), 0.97) << "the case is there";
+  EXPECT_GT(agreement(draw(scene, "shadow-volumes-zpass-plus"), rays), 0.998);
+  const RenderResult behind = draw(scene, "shadow-volumes");
+  const RenderResult automatic =
+      draw(scene, "shadow-volumes", {{"counting", std::string("automatic")}});
+  EXPECT_GT(agreement(behind, rays), 0.999);
+  EXPECT_GT(agreement(automatic, behind), 0.9995);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, NearPlanes,
+                         testing::Combine(testing::Values(LightKind::spot, LightKind::directional),
+                                          testing::Values(Projection::perspective,
+                                                          Projection::orthographic)));
+
+const PassCost& volumes_pass(const RenderResult& result) {
+  for (const PassCost& pass : result.cost.passes)
+    if (pass.name == "volumes") return pass;
+  throw std::logic_error("no volumes were drawn");
+}
+
+TEST(ShadowVolumes, are_counted_before_the_surface_where_the_camera_is_provably_outside) {
+  const Scene scene = floating_box(LightKind::spot, Projection::perspective);
+  const RenderResult behind = draw(scene, "shadow-volumes");
+  const RenderResult automatic =
+      draw(scene, "shadow-volumes", {{"counting", std::string("automatic")}});
+  const RenderResult before = draw(scene, "shadow-volumes-zpass");
+  EXPECT_EQ(automatic.visibility.pixels, behind.visibility.pixels);
+  EXPECT_EQ(volumes_pass(automatic).geometry_primitives, volumes_pass(before).geometry_primitives)
+      << "no caps are drawn";
+  EXPECT_GT(volumes_pass(behind).geometry_primitives, volumes_pass(before).geometry_primitives);
+}
+
+TEST(ShadowVolumes, are_the_same_with_a_two_sided_stencil_and_in_two_passes) {
+  const Scene scene = *scenes::load("disco-box");
+  for (const char* technique : {"shadow-volumes", "shadow-volumes-zpass"}) {
+    const RenderResult one = draw(scene, technique);
+    const RenderResult two = draw(scene, technique, {{"stencil_passes", std::int64_t{2}}});
+    EXPECT_EQ(one.visibility.pixels, two.visibility.pixels) << technique;
+    EXPECT_EQ(2 * volumes_pass(one).primitives, volumes_pass(two).primitives) << technique;
+  }
+}
+
+/// Plates above each other, so that the ground below lies in as many volumes.
+Scene stack(int plates) {
+  scenes::SceneBuilder b("stack", "Plates above each other");
+  const scenes::Look look = b.look("grey", glm::vec3(0.7f));
+  b.ground({-3.0, -3.0}, {3.0, 3.0}, look);
+  for (int i = 0; i < plates; ++i)
+    b.place(scenes::box({-0.5, 1.0 + 0.004 * i, -0.5}, {0.5, 1.002 + 0.004 * i, 0.5}), look,
+            "plate " + std::to_string(i));
+  b.spot("lamp", {0.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 50.0, LightExtent{});
+  b.camera("main", {0.0, 0.6, 4.0}, {0.0, 0.0, 0.0}, 25.0);
+  return b.scene;
+}
+
+TEST(ShadowVolumes, are_dark_under_255_overlaps_and_lit_again_under_256_as_eight_bits_wrap) {
+  // The middle of the picture shows the ground below the plates.
+  const auto middle = [](int plates) {
+    return draw(stack(plates), "shadow-volumes").visibility.at(size / 2, size / 2, 0);
+  };
+  EXPECT_EQ(middle(0), 1.0f);
+  EXPECT_EQ(middle(1), 0.0f);
+  EXPECT_EQ(middle(255), 0.0f);
+  EXPECT_EQ(middle(256), 1.0f);
+  EXPECT_EQ(middle(257), 0.0f);
 }
 
 TEST(ShadowVolumes, count_nothing_on_ground_that_no_shadow_meets) {
