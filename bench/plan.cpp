@@ -1,0 +1,79 @@
+// What each rule of the plan saves: bench_plan [WIDTH]. Every row is a scene as it was composed, or
+// seen through a lens four times as long, with one rule off against all rules on, in one process:
+// bytes of the scene on the device, vertices assembled in a frame, milliseconds of a fresh
+// renderer's first frame, and milliseconds of a frame (median of 9).
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "renderer/render.h"
+#include "renderer/scene/plan.h"
+#include "scenes/library.h"
+#include "techniques/registry.h"
+
+namespace {
+
+using namespace penumbra;
+
+struct Figures {
+  double mebibytes = 0.0;      ///< of geometry and textures that the plan keeps
+  std::uint64_t vertices = 0;  ///< assembled in a frame
+  double create_ms = 0.0;
+  double frame_ms = 0.0;
+};
+
+Figures measure(RenderRequest request) {
+  Figures figures;
+  const Plan plan =
+      make_plan(request, complete_parameters(request.technique->parameters, request.parameters),
+                instance_boxes(*request.scene));
+  for (const PlanLine& line : plan.lines)
+    if (line.kept) figures.mebibytes += static_cast<double>(line.bytes) / (1 << 20);
+  Renderer renderer({});
+  request.frames = 9;
+  const Cost cost = renderer.render(request).cost;
+  for (const PassCost& pass : cost.passes) figures.vertices += pass.vertices;
+  figures.create_ms = cost.create_ms;
+  figures.frame_ms = cost.median_ms;
+  return figures;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const auto width = static_cast<std::uint32_t>(count > 1 ? std::atoi(arguments[1]) : 300);
+  std::printf("device: %s\n\n", Renderer({}).device().name.c_str());
+  std::printf(
+      "| scene | lens | technique | rule off | MiB | vertices | first frame ms | frame ms |\n");
+  std::printf("|---|---|---|---|---|---|---|---|\n");
+  const std::pair<const char*, bool PlanRules::*> rules[] = {{"lights", &PlanRules::lights},
+                                                             {"surfaces", &PlanRules::surfaces},
+                                                             {"casters", &PlanRules::casters},
+                                                             {"textures", &PlanRules::textures}};
+  for (const char* id : {"warehouse-outside", "sweep:100x1600x2"})
+    for (const double lens : {1.0, 4.0})
+      for (const char* technique : {"none", "shadow-map", "shadow-volumes", "ray-traced"}) {
+        Scene scene = *scenes::load(id);
+        scene.cameras.front().vertical_fov /= lens;
+        RenderRequest request;
+        request.scene = std::make_shared<const Scene>(std::move(scene));
+        request.technique = techniques::resolve(technique).technique;
+        request.width = request.height = width;
+        const auto print = [&](const char* off) {
+          const Figures figures = measure(request);
+          std::printf("| %s | %.0fx | %s | %s | %.2f | %llu | %.0f | %.1f |\n", id, lens, technique,
+                      off, figures.mebibytes, static_cast<unsigned long long>(figures.vertices),
+                      figures.create_ms, figures.frame_ms);
+          std::fflush(stdout);
+        };
+        print("-");
+        for (const auto& [name, rule] : rules) {
+          request.rules = {};
+          request.rules.*rule = false;
+          print(name);
+        }
+        request.rules = {.lights = false, .surfaces = false, .casters = false, .textures = false};
+        print("all");
+      }
+  return 0;
+}
