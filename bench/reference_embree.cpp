@@ -41,6 +41,21 @@ struct Receiver {
   glm::vec3 normal;
 };
 
+/// Eight neighbouring points of a light, axis by axis.
+struct alignas(32) Packet {
+  float x[8], y[8], z[8];
+};
+
+std::vector<Packet> packets_of(const std::vector<glm::vec4>& points) {
+  std::vector<Packet> packets(points.size() / 8);
+  for (std::size_t i = 0; i < packets.size() * 8; ++i) {
+    packets[i / 8].x[i % 8] = points[i].x;
+    packets[i / 8].y[i % 8] = points[i].y;
+    packets[i / 8].z[i % 8] = points[i].z;
+  }
+  return packets;
+}
+
 class EmbreeProgram {
  public:
   explicit EmbreeProgram(const GpuScene& scene)
@@ -56,8 +71,8 @@ class EmbreeProgram {
   std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size,
                                   float offset) const;
   /// Rays that reach one of `points`, of all from `receivers`, on all cores.
-  std::uint64_t count_lit(const std::vector<Receiver>& receivers,
-                          const std::vector<glm::vec4>& points, bool directional) const;
+  std::uint64_t count_lit(const std::vector<Receiver>& receivers, const std::vector<Packet>& points,
+                          bool directional) const;
 
  private:
   RTCScene add(const GpuScene& scene, bool casters_only);
@@ -117,48 +132,51 @@ std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera, std
   return list;
 }
 
-/// Eight rays of one receiver to neighbouring points. Those to points behind its facet are hidden.
-std::uint32_t lit_of_packet(RTCScene scene, const Receiver& receiver, const glm::vec4* points,
-                            bool directional) {
-  alignas(32) RTCRay8 rays{};
+/// Eight rays of one receiver. Those to points behind its facet are hidden.
+std::uint32_t lit_of_packet(RTCScene scene, RTCIntersectContext& context, const Receiver& receiver,
+                            const Packet& points, bool directional) {
+  alignas(32) RTCRay8 rays;
   alignas(32) int valid[8];
-  std::uint32_t facing = 0;
+  const glm::vec3 from = directional ? glm::vec3(0.0f) : receiver.origin;
+  const float far = directional ? std::numeric_limits<float>::infinity() : 1.0f;
   for (int i = 0; i < 8; ++i) {
-    const glm::vec3 direction =
-        glm::vec3(points[i]) - (directional ? glm::vec3(0.0f) : receiver.origin);
-    valid[i] = glm::dot(direction, receiver.normal) > 0.0f ? -1 : 0;
-    facing += valid[i] != 0;
     rays.org_x[i] = receiver.origin.x;
     rays.org_y[i] = receiver.origin.y;
     rays.org_z[i] = receiver.origin.z;
-    rays.dir_x[i] = direction.x;
-    rays.dir_y[i] = direction.y;
-    rays.dir_z[i] = direction.z;
-    rays.tfar[i] = directional ? std::numeric_limits<float>::infinity() : 1.0f;
+    rays.dir_x[i] = points.x[i] - from.x;
+    rays.dir_y[i] = points.y[i] - from.y;
+    rays.dir_z[i] = points.z[i] - from.z;
+    rays.tnear[i] = 0.0f;
+    rays.tfar[i] = far;
+    rays.time[i] = 0.0f;
     rays.mask[i] = ~0u;
+    rays.id[i] = 0;
+    rays.flags[i] = 0;
+    const float facing = rays.dir_x[i] * receiver.normal.x + rays.dir_y[i] * receiver.normal.y +
+                         rays.dir_z[i] * receiver.normal.z;
+    valid[i] = facing > 0.0f ? -1 : 0;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded8(valid, scene, &context, &rays);
-  std::uint32_t hidden = 0;
-  for (int i = 0; i < 8; ++i) hidden += valid[i] != 0 && rays.tfar[i] < 0.0f;
-  return facing - hidden;
+  std::uint32_t lit = 0;
+  for (int i = 0; i < 8; ++i) lit += valid[i] != 0 && rays.tfar[i] >= 0.0f;
+  return lit;
 }
 
 std::uint64_t EmbreeProgram::count_lit(const std::vector<Receiver>& receivers,
-                                       const std::vector<glm::vec4>& points,
-                                       bool directional) const {
+                                       const std::vector<Packet>& points, bool directional) const {
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> lit{0};
   const auto work = [&] {
     constexpr std::size_t chunk = 1024;
     std::uint64_t found = 0;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (std::size_t first = next.fetch_add(chunk); first < receivers.size();
          first = next.fetch_add(chunk))
       for (std::size_t r = first; r < std::min(first + chunk, receivers.size()); ++r)
-        for (std::size_t p = 0; p + 8 <= points.size(); p += 8)
-          found += lit_of_packet(casters_, receivers[r], &points[p], directional);
+        for (const Packet& packet : points)
+          found += lit_of_packet(casters_, context, receivers[r], packet, directional);
     lit += found;
   };
   std::vector<std::thread> threads;
@@ -205,7 +223,7 @@ int run(const std::string& name, std::uint32_t size, std::uint32_t samples, int 
     lit = 0;
     for (const Light& light : scene->lights) {
       const WorldLight world = world_light(light, gpu.origin());
-      lit += embree.count_lit(receivers, light_points(world, samples, 1, 1, false),
+      lit += embree.count_lit(receivers, packets_of(light_points(world, samples, 1, 1, false)),
                               light.kind == LightKind::directional);
     }
     timing.embree.push_back(ms_since(start));
