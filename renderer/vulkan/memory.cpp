@@ -8,8 +8,9 @@
 namespace penumbra::vulkan {
 namespace {
 
+/// `before` is what its owner was given already: all of it is held at the same time.
 Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs, MemoryKind kind,
-                               const std::string& name) {
+                               const std::string& name, const MemoryLedger& before) {
   VkMemoryPropertyFlags wanted = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (kind != MemoryKind::device) {
@@ -19,14 +20,31 @@ Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   info.allocationSize = needs.size;
   info.memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wanted, preferred);
+  VkDeviceSize total = needs.size;
+  for (const ResourceCost& entry : before.entries) total += entry.bytes;
   // Checked here, since a driver may promise more than its heap holds.
   const std::uint32_t heap = device.memory.memoryTypes[info.memoryTypeIndex].heapIndex;
-  const bool fits = needs.size <= device.memory.memoryHeaps[heap].size;
+  const bool fits = total <= device.memory.memoryHeaps[heap].size;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   if (!fits || vkAllocateMemory(device.handle, &info, nullptr, &memory) != VK_SUCCESS)
     throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) +
-                       " bytes");
+                       " bytes, " + std::to_string(total) + " in all");
   return {device.handle, memory};
+}
+
+/// Bytes of a texel, exact for formats of many bytes and never too many for the others.
+double texel_bytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+      return 16.0;
+    case VK_FORMAT_R32G32_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_UNORM:
+      return 8.0;
+    default:
+      return 4.0;
+  }
 }
 
 VkImageAspectFlags aspects_of(VkFormat format) {
@@ -83,7 +101,7 @@ Buffer::Buffer(Device& device, MemoryLedger& ledger, const std::string& name, Vk
   buffer_ = {device.handle, buffer};
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
-  memory_ = allocate(device, needs, kind, name);
+  memory_ = allocate(device, needs, kind, name, ledger);
   check(vkBindBufferMemory(device.handle, buffer, memory_, 0), "vkBindBufferMemory");
   if (kind != MemoryKind::device)
     check(vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
@@ -117,17 +135,20 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
                                                info.tiling, info.usage, 0,
                                                &format_limits) != VK_SUCCESS)
     throw device_error("the device has no image format for " + name);
-  // A sum over all levels below 4/3 of the base; the driver's own answer overflows for huge images.
-  const double bytes =
-      16.0 * 4.0 / 3.0 * description.width * description.height * description.layers;
-  if (bytes > 64e9) throw device_error(name + " is too large");
+  // Reckoned here, since the driver's own answer overflows for huge images.
+  const double bytes = texel_bytes(description.format) * description.width * description.height *
+                       description.layers * (description.levels > 1 ? 4.0 / 3.0 : 1.0);
+  if (bytes > static_cast<double>(format_limits.maxResourceSize))
+    throw device_error(name + " of " + std::to_string(static_cast<std::uint64_t>(bytes)) +
+                       " bytes exceeds the device's limit of " +
+                       std::to_string(format_limits.maxResourceSize) + " for an image");
 
   VkImage image = VK_NULL_HANDLE;
   check(vkCreateImage(device.handle, &info, nullptr, &image), "vkCreateImage");
   image_ = {device.handle, image};
   VkMemoryRequirements needs{};
   vkGetImageMemoryRequirements(device.handle, image, &needs);
-  memory_ = allocate(device, needs, MemoryKind::device, name);
+  memory_ = allocate(device, needs, MemoryKind::device, name, ledger);
   check(vkBindImageMemory(device.handle, image, memory_, 0), "vkBindImageMemory");
   ledger.add(name, needs.size);
 
