@@ -46,25 +46,66 @@ std::vector<Parameter> blur_parameters() {
   return list;
 }
 
-void BlurredMap::draw(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
-                      VkFormat format) {
-  const bool mips = boolean_of(context.input.parameters, "mips");
-  sampling_ = mips ? vulkan::Sampling::linear_mipmapped : vulkan::Sampling::linear;
-  if (!image_) {
-    vulkan::ImageDescription description = depth.image().description();
-    description.format = format;
-    description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    rows_ = vulkan::Image(context.device, context.memory, "blurred rows", description);
-    description.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    if (mips) description.levels = static_cast<std::uint32_t>(std::bit_width(description.width));
-    image_ = vulkan::Image(context.device, context.memory, "blurred map", description);
-  }
+Parameter bleeding_parameter(double default_value) {
+  Parameter reduction;
+  reduction.name = "bleeding_reduction";
+  reduction.default_value = default_value;
+  reduction.minimum = 0.0;
+  reduction.maximum = 0.99;
+  reduction.meaning =
+      "Light below this becomes shadow and the rest is stretched smoothly: less bleeding, darker "
+      "penumbrae. 0 leaves the bound as it is.";
+  return reduction;
+}
+
+Parameter deviation_parameter() {
+  Parameter deviation;
+  deviation.name = "minimum_deviation";
+  deviation.default_value = 0.001;
+  deviation.minimum = 0.0;
+  deviation.maximum = 100.0;
+  deviation.unit = "m";
+  deviation.meaning =
+      "Depths are taken to scatter at least this much: hides rounding of the moments.";
+  return deviation;
+}
+
+Parameter precision_parameter(const std::string& meaning) {
+  Parameter precision;
+  precision.name = "precision";
+  precision.type = ParameterType::choice;
+  precision.choices = {"fp16", "fp32"};
+  precision.default_value = std::string("fp32");
+  precision.meaning = meaning;
+  precision.variant = true;
+  return precision;
+}
+
+void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,
+                      const BlurSettings& settings) {
+  const bool mips =
+      settings.filter == MapFilter::mean && boolean_of(context.input.parameters, "mips");
+  sampling_ = settings.filter != MapFilter::mean ? vulkan::Sampling::nearest
+              : mips                             ? vulkan::Sampling::linear_mipmapped
+                                                 : vulkan::Sampling::linear;
+  if (!image_) create(context, depth, settings, mips);
   for (std::uint32_t face = 0; face < image_.description().layers; ++face)
-    blur(context, depth, encoder, face);
+    blur(context, depth, settings, face);
   if (mips) context.pass("mips", [&](vulkan::Commands& commands) { reduce(commands); });
 }
 
-void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
+void BlurredMap::create(PrepareContext& context, const DepthMap& depth,
+                        const BlurSettings& settings, bool mips) {
+  vulkan::ImageDescription description = depth.image().description();
+  description.format = settings.format;
+  description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  rows_ = vulkan::Image(context.device, context.memory, settings.name + " rows", description);
+  description.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (mips) description.levels = static_cast<std::uint32_t>(std::bit_width(description.width));
+  image_ = vulkan::Image(context.device, context.memory, settings.name, description);
+}
+
+void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
                       std::uint32_t face) {
   const auto run = [&](const std::string& name, const std::string& fragment,
                        const vulkan::Image& target, const vulkan::Bindings& bindings) {
@@ -72,6 +113,8 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const std:
     source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                      {VK_SHADER_STAGE_FRAGMENT_BIT, fragment}};
     source.preamble = context.declarations;
+    if (settings.filter == MapFilter::logarithmic) source.preamble += "#define FILTER_LOGARITHMS\n";
+    if (settings.filter == MapFilter::maximum) source.preamble += "#define FILTER_MAXIMUM\n";
     vulkan::GraphicsState state;
     state.color_formats = {target.description().format};
     vulkan::RenderTargets targets;
@@ -79,9 +122,12 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const std:
     targets.height = target.description().height;
     targets.colors = {{target.slice(face), false, {}}};
     const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+    // An encoder may read parameters that are no constants.
+    vulkan::Bindings all = context.frame_bindings;
+    all.add(bindings);
     context.pass(name, [&](vulkan::Commands& commands) {
       commands.begin_rendering(targets);
-      commands.bind(pipeline, bindings);
+      commands.bind(pipeline, all);
       commands.constants(face);
       commands.full_screen_triangle();
       commands.end_rendering();
@@ -89,7 +135,7 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const std:
   };
   vulkan::Bindings rows;
   rows.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
-  run("encode and blur", encoder, rows_, rows);
+  run("encode and blur", settings.encoder, rows_, rows);
   vulkan::Bindings columns;
   columns.texture("blurred_rows", rows_, vulkan::Sampling::nearest);
   run("blur", "renderer/shadow_maps/blurred_map.frag", image_, columns);
@@ -114,8 +160,8 @@ void BlurredMap::reduce(vulkan::Commands& commands) {
   }
 }
 
-void BlurredMap::bind(vulkan::Bindings& bindings) const {
-  bindings.texture("blurred_map", image_, sampling_);
+void BlurredMap::bind(vulkan::Bindings& bindings, const std::string& name) const {
+  bindings.texture(name, image_, sampling_);
 }
 
 }  // namespace penumbra::shadow_maps

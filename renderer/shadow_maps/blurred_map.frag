@@ -1,5 +1,9 @@
-// One direction of a separable blur over a map: columns of what was blurred along rows. A stage that
+// One direction of a separable filter over a map: columns of what was filtered along rows. A stage that
 // defines ENCODE and vec4 encode_depth(float) before it reads and encodes rows of the depth map.
+//
+// Without a further definition the filter takes means. FILTER_LOGARITHMS: the first component holds
+// logarithms, and the result is the logarithm of the mean of what they stand for. FILTER_MAXIMUM: the
+// result is the greatest value.
 #ifdef ENCODE
 uniform sampler2DArray shadow_map;
 const ivec2 direction = ivec2(1, 0);
@@ -19,7 +23,8 @@ float weight(int offset) {
 }
 
 // Texels beyond the border repeat it.
-vec4 value_at(ivec2 texel) {
+vec4 value_at(int offset) {
+  ivec2 texel = ivec2(gl_FragCoord.xy) + offset * direction;
 #ifdef ENCODE
   ivec2 last = textureSize(shadow_map, 0).xy - 1;
   return encode_depth(texelFetch(shadow_map, ivec3(clamp(texel, ivec2(0), last), int(blur.face)), 0).r);
@@ -29,13 +34,40 @@ vec4 value_at(ivec2 texel) {
 #endif
 }
 
-void main() {
-  vec4 sum = vec4(0.0);
+#if defined(FILTER_LOGARITHMS)
+// The greatest term is kept apart: exponentials of the others then lie between 0 and 1.
+vec4 filtered() {
+  float greatest = value_at(0).r;
+  float sum = 0.0;
   float total = 0.0;
   for (int i = -parameter_blur; i <= parameter_blur; ++i) {
-    float share = weight(i);
-    sum += share * value_at(ivec2(gl_FragCoord.xy) + i * direction);
-    total += share;
+    float value = value_at(i).r;
+    float top = max(greatest, value);
+    sum = sum * exp(greatest - top) + weight(i) * exp(value - top);
+    greatest = top;
+    total += weight(i);
   }
-  out_value = sum / total;
+  return vec4(greatest + log(sum / total), 0.0, 0.0, 0.0);
 }
+#elif defined(FILTER_MAXIMUM)
+vec4 filtered() {
+  vec4 greatest = value_at(0);
+  for (int i = -parameter_blur; i <= parameter_blur; ++i) greatest = max(greatest, value_at(i));
+  return greatest;
+}
+#else
+// Weights are made small before they are added up, and not moved behind the sum by a compiler (precise):
+// a sum of values near the format's end would leave it where their mean does not.
+vec4 filtered() {
+  const float share = 1.0 / float(2 * parameter_blur + 1);
+  precise vec4 sum = vec4(0.0);
+  float total = 0.0;
+  for (int i = -parameter_blur; i <= parameter_blur; ++i) {
+    sum += (share * weight(i)) * value_at(i);
+    total += share * weight(i);
+  }
+  return sum / total;
+}
+#endif
+
+void main() { out_value = filtered(); }

@@ -8,23 +8,46 @@ namespace penumbra::shadow_maps {
 /// anisotropic. Techniques append their own.
 std::vector<Parameter> blur_parameters();
 
+/// `bleeding_reduction`: how much dim light is taken for bleeding.
+Parameter bleeding_parameter(double default_value);
+
+/// `minimum_deviation`, in metres: hides rounding of moments.
+Parameter deviation_parameter();
+
+/// `precision`: fp16 or fp32, for formats of a map. `meaning` says what fails with fewer bits.
+Parameter precision_parameter(const std::string& meaning);
+
+enum class MapFilter {
+  mean,
+  logarithmic,  ///< of logarithms: that of the mean of what they stand for. No mips.
+  maximum,      ///< of all texels that the blur reads. No mips.
+};
+
+/// What a map is made of.
+struct BlurSettings {
+  std::string encoder;  ///< path of a fragment stage that defines `vec4 encode_depth(float)`, of a
+                        ///< depth from 0 to 1, and ENCODE, and includes blurred_map.frag
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  MapFilter filter = MapFilter::mean;
+  std::string name = "blurred map";  ///< in the memory report
+};
+
 /// A map of values that may be averaged, made of a depth map and blurred: moments, exponentials.
 /// Same faces as the depth map, one layer each, with a mip chain where parameter mips asks for one.
 class BlurredMap {
  public:
-  /// `encoder` is the path of a fragment stage that defines `vec4 encode_depth(float)`, of a depth
-  /// from 0 to 1, and ENCODE, and includes blurred_map.frag.
   /// Two passes, "encode and blur" along rows and "blur" along columns, then "mips".
-  void draw(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
-            VkFormat format);
+  void draw(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings);
 
   /// Name for renderer/shadow_maps/blurred_map.glsl: "blurred_map".
-  void bind(vulkan::Bindings& bindings) const;
+  void bind(vulkan::Bindings& bindings, const std::string& name = "blurred_map") const;
 
   const vulkan::Image& image() const { return image_; }
 
  private:
-  void blur(PrepareContext& context, const DepthMap& depth, const std::string& encoder,
+  void create(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
+              bool mips);
+  void blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
             std::uint32_t face);
   void reduce(vulkan::Commands& commands);
 

@@ -6,33 +6,10 @@ namespace {
 std::vector<Parameter> vsm_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
   for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
-  Parameter precision;
-  precision.name = "precision";
-  precision.type = ParameterType::choice;
-  precision.choices = {"fp16", "fp32"};
-  precision.default_value = std::string("fp32");
-  precision.meaning = "Bits of a moment. 16 are too few for the second: shadows show bands.";
-  list.push_back(precision);
-
-  Parameter reduction;
-  reduction.name = "bleeding_reduction";
-  reduction.default_value = 0.2;
-  reduction.minimum = 0.0;
-  reduction.maximum = 0.99;
-  reduction.meaning =
-      "Light below this becomes shadow and the rest is stretched smoothly: less bleeding, darker "
-      "penumbrae. 0 leaves the bound as it is.";
-  list.push_back(reduction);
-
-  Parameter deviation;
-  deviation.name = "minimum_deviation";
-  deviation.default_value = 0.001;
-  deviation.minimum = 0.0;
-  deviation.maximum = 100.0;
-  deviation.unit = "m";
-  deviation.meaning =
-      "Depths are taken to scatter at least this much: hides rounding of the moments.";
-  list.push_back(deviation);
+  list.push_back(shadow_maps::precision_parameter(
+      "Bits of a moment. 16 are too few for the second: shadows show bands."));
+  list.push_back(shadow_maps::bleeding_parameter(0.2));
+  list.push_back(shadow_maps::deviation_parameter());
   return list;
 }
 
@@ -45,8 +22,10 @@ class VarianceShadowMap : public Technique {
     const ParameterValues& parameters = context.input.parameters;
     depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
     const bool half = choice_of(parameters, "precision") == "fp16";
-    moments_.draw(context, depth_, "techniques/vsm/moments.frag",
-                  half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT);
+    shadow_maps::BlurSettings settings;
+    settings.encoder = "techniques/vsm/moments.frag";
+    settings.format = half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
+    moments_.draw(context, depth_, settings);
   }
 
   void bind(vulkan::Bindings& bindings) const override {
@@ -72,7 +51,8 @@ TechniqueDescription describe_vsm() {
   description.parameters = vsm_parameters();
   description.diagnostics = {
       {"map", "The depth map as the light sees it: near is dark, far is bright."},
-      {"moments", "Mean depth in red and ten times the deviation from it in green."}};
+      {"moments", "Mean depth in red and ten times the deviation from it in green."},
+      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
   description.shader = "techniques/vsm/shadow.glsl";
   description.create = [] { return std::make_unique<VarianceShadowMap>(); };
   return description;

@@ -1,0 +1,9 @@
+// Exponentials of depth, or their logarithms, filtered along rows. Depth 1 is the cleared map's.
+#define ENCODE
+#include "renderer/shadow_maps/half_range.glsl"
+vec4 encode_depth(float depth) {
+  float logarithm = parameter_c * depth;
+  return vec4(parameter_filtering == filtering_logarithmic ? logarithm : in_format(exp(logarithm)), 0.0, 0.0,
+              0.0);
+}
+#include "renderer/shadow_maps/blurred_map.frag"

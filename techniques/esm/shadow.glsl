@@ -1,0 +1,67 @@
+#include "renderer/shadow_maps/blurred_map.glsl"
+#include "renderer/shadow_maps/diagnostics.glsl"
+#include "renderer/shadow_maps/filters.glsl"
+
+// Logarithm of the mean of exp(c z) over what the pixel covers; infinite after an overflow.
+float filtered_logarithm(ShadowQuery query, MapPoint point) {
+  if (parameter_filtering == filtering_logarithmic) return read_logarithms(point);
+  float mean = read_blurred(query, point).r;
+  if (!is_finite(vec4(mean))) return overflow();
+  // No exponential is below 1; a sampler's rounding between 1e38 and 1 may leave less, or nothing.
+  return log(max(mean, 1.0));
+}
+
+#ifdef variant_fallback_z_max
+uniform sampler2DArray farthest_map;
+
+// Greatest depth in the blur's kernel around the four texels that are interpolated.
+float farthest_depth(MapPoint point) {
+  ivec2 first = ivec2(floor(point.texel - 0.5));
+  ivec2 last = textureSize(farthest_map, 0).xy - 1;
+  float farthest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 texel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), last);
+    farthest = max(farthest, texelFetch(farthest_map, ivec3(texel, point.face), 0).r);
+  }
+  return farthest;
+}
+#endif
+
+// exp(c (z - d)) stands for a comparison only where nothing in the kernel lies behind the receiver
+// (Adorjan 2013, 2.2.2). Judged without any bias: the map's own is taken back.
+bool assumption_fails(MapPoint point, float stored) {
+  if (parameter_fallback == fallback_none) return false;
+  float logarithm = parameter_c * depth_of_distance(point.distance + map.texel.z);
+#ifdef variant_fallback_z_max
+  stored = parameter_c * farthest_depth(point);
+#endif
+  return stored - logarithm > log(1.0 + parameter_threshold);
+}
+
+float calculate_shadow(ShadowQuery query) {
+  MapPoint point = locate(query, float(parameter_blur));
+  if (point.face < 0) return 1.0;
+  float stored = filtered_logarithm(query, point);
+  if (!is_finite(vec4(stored))) return overflow();
+  if (assumption_fails(point, stored)) return mean_of_box(locate(query, 0.5), 2);
+  // Over a slope the mean of exponentials is greater than that of the middle: no further bias is needed.
+  return min(exp(stored - parameter_c * depth_of_distance(point.distance)), 1.0);
+}
+
+// First face: the logarithm of what is stored, over c; magenta where it is no finite number.
+vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
+  float stored = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0).r;
+  if (!is_finite(vec4(stored))) return vec4(1.0, 0.0, 1.0, 1.0);
+  if (parameter_filtering == filtering_linear) stored = log(stored);
+  return vec4(vec3(stored / parameter_c), 1.0);
+}
+
+// Where percentage-closer filtering takes over: red over the grey of what is seen.
+vec4 draw_diagnostic_fallback(ShadowQuery query, vec2 picture) {
+  MapPoint point = locate(query, float(parameter_blur));
+  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  float lit = calculate_shadow(query);
+  if (!is_finite(vec4(lit))) return vec4(1.0, 0.0, 1.0, 1.0);
+  bool fails = assumption_fails(point, filtered_logarithm(query, point));
+  return vec4(fails ? vec3(1.0, 0.3 * lit, 0.3 * lit) : vec3(0.1 + 0.6 * lit), 1.0);
+}

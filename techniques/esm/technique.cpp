@@ -1,0 +1,122 @@
+#include "renderer/error.h"
+#include "renderer/shadow_maps/blurred_map.h"
+
+namespace penumbra::techniques {
+namespace {
+
+std::vector<Parameter> esm_parameters() {
+  std::vector<Parameter> list = shadow_maps::map_parameters();
+  for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
+  Parameter c;
+  c.name = "c";
+  c.default_value = 80.0;
+  c.minimum = 1.0;
+  c.maximum = 1000.0;
+  c.scale = ParameterScale::logarithmic;
+  c.meaning =
+      "Steepness of the exponential over the map's range. Higher: less light leaks in at contacts. "
+      "Linear filtering overflows above 88.7, with fp16 above 11.";
+  list.push_back(c);
+
+  Parameter filtering;
+  filtering.name = "filtering";
+  filtering.type = ParameterType::choice;
+  filtering.choices = {"linear", "logarithmic"};
+  filtering.default_value = std::string("linear");
+  filtering.meaning =
+      "What the map holds. linear: exp(c z), which samplers may filter. logarithmic: c z, filtered "
+      "by the shader alone, so without mips; no c overflows.";
+  filtering.variant = true;
+  list.push_back(filtering);
+
+  Parameter fallback;
+  fallback.name = "fallback";
+  fallback.type = ParameterType::choice;
+  fallback.choices = {"none", "threshold", "z-max"};
+  fallback.default_value = std::string("threshold");
+  fallback.meaning =
+      "Where something in the kernel lies behind the receiver, 2x2 comparisons take over. "
+      "threshold: where the result passes 1. z-max: where the kernel's greatest depth does.";
+  fallback.variant = true;
+  list.push_back(fallback);
+
+  Parameter threshold;
+  threshold.name = "threshold";
+  threshold.default_value = 0.02;
+  threshold.minimum = 0.0;
+  threshold.maximum = 1000.0;
+  threshold.meaning = "What the result may pass 1 by before the fallback is taken.";
+  list.push_back(threshold);
+  list.push_back(shadow_maps::precision_parameter(
+      "Bits of a texel. 16 overflow above c 11 with linear filtering, and round c z coarsely with "
+      "logarithmic."));
+  return list;
+}
+
+/// Exponential shadow maps: the comparison is replaced by a steep exponential, which factors into a
+/// part of the caster that may be filtered and one of the receiver.
+class ExponentialShadowMap : public Technique {
+ public:
+  void require(const TechniqueInput& input, Requirements&) override {
+    if (choice_of(input.parameters, "filtering") == "linear") return;
+    for (const char* name : {"mips", "anisotropic"})
+      if (boolean_of(input.parameters, name))
+        throw unsupported(std::string("logarithmic filtering knows no ") + name +
+                              ": samplers average logarithms wrongly; set it to false",
+                          name);
+  }
+
+  void prepare(PrepareContext& context) override {
+    const ParameterValues& parameters = context.input.parameters;
+    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
+    shadow_maps::BlurSettings settings;
+    settings.encoder = "techniques/esm/exponential.frag";
+    settings.format =
+        choice_of(parameters, "precision") == "fp16" ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
+    if (choice_of(parameters, "filtering") == "logarithmic")
+      settings.filter = shadow_maps::MapFilter::logarithmic;
+    exponentials_.draw(context, depth_, settings);
+    z_max_ = choice_of(parameters, "fallback") == "z-max";
+    if (!z_max_) return;
+    settings.encoder = "techniques/esm/farthest.frag";
+    settings.format = VK_FORMAT_R32_SFLOAT;
+    settings.filter = shadow_maps::MapFilter::maximum;
+    settings.name = "farthest depths";
+    farthest_.draw(context, depth_, settings);
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    depth_.bind(bindings);
+    exponentials_.bind(bindings);
+    if (z_max_) farthest_.bind(bindings, "farthest_map");
+  }
+
+ private:
+  shadow_maps::DepthMap depth_;
+  shadow_maps::BlurredMap exponentials_;
+  shadow_maps::BlurredMap farthest_;  ///< only with fallback z-max
+  bool z_max_ = false;
+};
+
+}  // namespace
+
+TechniqueDescription describe_esm();
+TechniqueDescription describe_esm() {
+  TechniqueDescription description;
+  description.id = "esm";
+  description.label = "ESM";
+  description.title = "Exponential shadow map";
+  description.family = "map";
+  description.source = "Adorjan 2013, 2.2.2 and 3.3.2; Annen et al. 2008; Salvi 2008";
+  description.parameters = esm_parameters();
+  description.diagnostics = {
+      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      {"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
+      {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
+      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+  description.shader = "techniques/esm/shadow.glsl";
+  description.create = [] { return std::make_unique<ExponentialShadowMap>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques

@@ -1,0 +1,36 @@
+#include "renderer/shadow_maps/blurred_map.glsl"
+#include "renderer/shadow_maps/chebyshev.glsl"
+#include "renderer/shadow_maps/diagnostics.glsl"
+
+// Bounds by the moments of exp(c z): far from the receiver's own depth the warp stretches distances.
+// A deviation of depth is one of the warped depth by the warp's slope.
+float positive_bound(vec2 moments, float depth, float deviation) {
+  float warped = exp(parameter_c_positive * depth);
+  return upper_bound(moments, warped, parameter_c_positive * warped * deviation);
+}
+float negative_bound(vec2 moments, float depth, float deviation) {
+  float warped = -exp(-parameter_c_negative * depth);
+  return upper_bound(moments, warped, -parameter_c_negative * warped * deviation);
+}
+
+float calculate_shadow(ShadowQuery query) {
+  MapPoint point = locate(query, float(parameter_blur));
+  if (point.face < 0) return 1.0;
+  vec4 moments = read_blurred(query, point);
+  if (!is_finite(moments)) return overflow();
+  float depth = depth_of_distance(point.distance - point.grant);
+  float deviation = parameter_minimum_deviation * map.range.z;
+  float lit = positive_bound(moments.xy, depth, deviation);
+  if (parameter_components == components_4) lit = min(lit, negative_bound(moments.zw, depth, deviation));
+  return reduce_bleeding(lit);
+}
+
+// First face: logarithms of both means as depths, positive red and negative green; magenta where a
+// moment is no finite number.
+vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
+  vec4 moments = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0);
+  if (!is_finite(moments)) return vec4(1.0, 0.0, 1.0, 1.0);
+  float negative = parameter_components == components_4
+                       ? -log(max(-moments.z, 1e-38)) / parameter_c_negative : 0.0;
+  return vec4(log(moments.x) / parameter_c_positive, negative, 0.0, 1.0);
+}

@@ -1,0 +1,91 @@
+#include "renderer/shadow_maps/blurred_map.h"
+
+namespace penumbra::techniques {
+namespace {
+
+Parameter constant_parameter(const char* name, double value, const char* meaning) {
+  Parameter constant;
+  constant.name = name;
+  constant.default_value = value;
+  constant.minimum = 1.0;
+  constant.maximum = 1000.0;
+  constant.scale = ParameterScale::logarithmic;
+  constant.meaning = meaning;
+  return constant;
+}
+
+std::vector<Parameter> evsm_parameters() {
+  std::vector<Parameter> list = shadow_maps::map_parameters();
+  for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
+  list.push_back(constant_parameter(
+      "c_positive", 30.0,
+      "Steepness of the warp exp(c z) over the map's range. Higher: less bleeding between casters. "
+      "Its square overflows above 44.3, with fp16 above 5.5."));
+  list.push_back(constant_parameter(
+      "c_negative", 10.0,
+      "Steepness of the warp -exp(-c z), which mends surfaces that slope within the kernel."));
+  Parameter components;
+  components.name = "components";
+  components.type = ParameterType::choice;
+  components.choices = {"2", "4"};
+  components.default_value = std::string("4");
+  components.meaning = "Moments in a texel: those of the positive warp, or of both.";
+  components.variant = true;
+  list.push_back(components);
+  list.push_back(shadow_maps::precision_parameter(
+      "Bits of a moment. 16 overflow above c_positive 5.5, too little to stop bleeding."));
+  list.push_back(shadow_maps::bleeding_parameter(0.0));
+  list.push_back(shadow_maps::deviation_parameter());
+  return list;
+}
+
+/// Exponential variance shadow maps: bounds by the moments of depth under two warps, of which the
+/// smaller holds.
+class ExponentialVarianceShadowMap : public Technique {
+ public:
+  void require(const TechniqueInput&, Requirements&) override {}
+
+  void prepare(PrepareContext& context) override {
+    const ParameterValues& parameters = context.input.parameters;
+    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
+    const bool half = choice_of(parameters, "precision") == "fp16";
+    shadow_maps::BlurSettings settings;
+    settings.encoder = "techniques/evsm/warped_moments.frag";
+    if (choice_of(parameters, "components") == "4")
+      settings.format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+    else
+      settings.format = half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
+    moments_.draw(context, depth_, settings);
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    depth_.bind(bindings);
+    moments_.bind(bindings);
+  }
+
+ private:
+  shadow_maps::DepthMap depth_;
+  shadow_maps::BlurredMap moments_;
+};
+
+}  // namespace
+
+TechniqueDescription describe_evsm();
+TechniqueDescription describe_evsm() {
+  TechniqueDescription description;
+  description.id = "evsm";
+  description.label = "EVSM";
+  description.title = "Exponential variance shadow map";
+  description.family = "map";
+  description.source = "Adorjan 2013, 2.2.3; Lauritzen and McCool 2008";
+  description.parameters = evsm_parameters();
+  description.diagnostics = {
+      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      {"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
+      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+  description.shader = "techniques/evsm/shadow.glsl";
+  description.create = [] { return std::make_unique<ExponentialVarianceShadowMap>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques

@@ -1,0 +1,80 @@
+#include "renderer/shadow_maps/blurred_map.h"
+
+namespace penumbra::techniques {
+namespace {
+
+std::vector<Parameter> msm_parameters() {
+  std::vector<Parameter> list = shadow_maps::map_parameters();
+  for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
+  Parameter precision;
+  precision.name = "precision";
+  precision.type = ParameterType::choice;
+  precision.choices = {"unorm16", "fp32"};
+  precision.default_value = std::string("fp32");
+  precision.meaning =
+      "What a moment is kept in: 64 or 128 bits a texel. unorm16 asks for a moment_bias of 6e-5 or "
+      "more.";
+  precision.variant = true;
+  list.push_back(precision);
+
+  Parameter bias;
+  bias.name = "moment_bias";
+  bias.default_value = 3e-5;
+  bias.minimum = 0.0;
+  bias.maximum = 0.1;
+  bias.meaning =
+      "Share of moments of scattered depths that is mixed in, so that rounding leaves moments "
+      "which "
+      "depths can have. More: more bleeding.";
+  list.push_back(bias);
+  list.push_back(shadow_maps::bleeding_parameter(0.05));
+  return list;
+}
+
+/// Moment shadow maps: four moments of depth bound the light from above more tightly than two.
+class MomentShadowMap : public Technique {
+ public:
+  void require(const TechniqueInput&, Requirements&) override {}
+
+  void prepare(PrepareContext& context) override {
+    const ParameterValues& parameters = context.input.parameters;
+    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
+    shadow_maps::BlurSettings settings;
+    settings.encoder = "techniques/msm/moments.frag";
+    settings.format = choice_of(parameters, "precision") == "unorm16"
+                          ? VK_FORMAT_R16G16B16A16_UNORM
+                          : VK_FORMAT_R32G32B32A32_SFLOAT;
+    moments_.draw(context, depth_, settings);
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    depth_.bind(bindings);
+    moments_.bind(bindings);
+  }
+
+ private:
+  shadow_maps::DepthMap depth_;
+  shadow_maps::BlurredMap moments_;
+};
+
+}  // namespace
+
+TechniqueDescription describe_msm();
+TechniqueDescription describe_msm() {
+  TechniqueDescription description;
+  description.id = "msm";
+  description.label = "MSM";
+  description.title = "Moment shadow map";
+  description.family = "map";
+  description.source = "Peters and Klein 2015, four moments, Hamburger problem";
+  description.parameters = msm_parameters();
+  description.diagnostics = {
+      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      {"moments", "Mean depth in red and ten times the deviation from it in green."},
+      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+  description.shader = "techniques/msm/shadow.glsl";
+  description.create = [] { return std::make_unique<MomentShadowMap>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques
