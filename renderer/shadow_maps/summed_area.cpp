@@ -1,0 +1,56 @@
+#include "renderer/shadow_maps/summed_area.h"
+
+#include "renderer/error.h"
+
+namespace penumbra::shadow_maps {
+
+Parameter table_parameter() {
+  Parameter table;
+  table.name = "table";
+  table.type = ParameterType::choice;
+  table.choices = {"fp32", "distributed", "int32", "fp64"};
+  table.default_value = std::string("int32");
+  table.meaning =
+      "What sums of moments are kept in. fp32: single floats. distributed: two floats a moment, "
+      "one "
+      "for its first eight bits. int32: fixed point that may wrap. fp64: doubles, where the device "
+      "has them.";
+  table.variant = true;
+  return table;
+}
+
+void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth,
+                           std::int64_t largest_width) {
+  const std::string& type = choice_of(context.input.parameters, "table");
+  if (type == "fp64" && context.device.features.shaderFloat64 == VK_FALSE)
+    throw unsupported("this device has no doubles (shaderFloat64), so no table of them", "table");
+  const vulkan::ImageDescription& map = depth.image().description();
+  const VkDeviceSize entry = type == "fp32" || type == "int32" ? 8 : 16;
+  if (!table_)
+    table_ = vulkan::Buffer(context.device, context.memory, "summed-area table",
+                            entry * map.width * map.height * map.layers,
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const std::string preamble =
+      context.declarations + "const int largest_width = " + std::to_string(largest_width) + ";\n";
+  constexpr std::uint32_t lines = 8;  // of a group, as summed_area.comp has it
+  const auto run = [&](const char* name, const std::string& own, const vulkan::Bindings& bindings) {
+    const vulkan::Pipeline& pipeline =
+        context.pipelines.compute("renderer/shadow_maps/summed_area.comp", preamble + own);
+    context.pass(name, [&](vulkan::Commands& commands) {
+      commands.bind(pipeline, bindings);
+      commands.constants(static_cast<std::int32_t>(map.width));
+      commands.dispatch((map.width + lines - 1) / lines, map.layers);
+    });
+  };
+  vulkan::Bindings bindings;
+  bindings.buffer("SummedAreaBlock", table_.whole());
+  bindings.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
+  run("sum rows", "", bindings);
+  run("sum columns", "#define COLUMNS\n", bindings);
+}
+
+void SummedAreaTable::bind(vulkan::Bindings& bindings) const {
+  bindings.buffer("SummedAreaBlock", table_.whole());
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,34 @@
+// How sums of moments are kept in a summed-area table. A program that includes this has a variant
+// parameter `table` of the choices below, and the constant largest_width: the widest rectangle, in
+// texels, whose sum must be had.
+#ifndef PENUMBRA_SUMMED_AREA_TYPES_GLSL
+#define PENUMBRA_SUMMED_AREA_TYPES_GLSL
+
+#if defined(variant_table_fp32)
+#define TableSum vec2
+TableSum table_value(vec2 moments) { return moments; }
+vec2 moments_of_sum(TableSum sum) { return sum; }
+
+#elif defined(variant_table_distributed)
+// The first eight bits of a moment and the rest in sums of their own (Adorjan 2013, 3.3.5).
+#define TableSum vec4
+const float distribution = 256.0;
+TableSum table_value(vec2 moments) {
+  vec2 whole = floor(distribution * moments);
+  return vec4(whole / distribution, distribution * moments - whole);
+}
+vec2 moments_of_sum(TableSum sum) { return sum.xy + sum.zw / distribution; }
+
+#elif defined(variant_table_int32)
+// Fixed point with as many bits as leave room for the widest rectangle: the table itself may wrap.
+#define TableSum uvec2
+const float units = min(4294967040.0 / float((largest_width + 1) * (largest_width + 1)), 16777216.0);
+TableSum table_value(vec2 moments) { return uvec2(units * moments + 0.5); }
+vec2 moments_of_sum(TableSum sum) { return vec2(sum) / units; }
+
+#elif defined(variant_table_fp64)
+#define TableSum dvec2
+TableSum table_value(vec2 moments) { return dvec2(moments); }
+vec2 moments_of_sum(TableSum sum) { return vec2(sum); }
+#endif
+#endif

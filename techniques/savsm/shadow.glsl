@@ -1,0 +1,45 @@
+#include "renderer/shadow_maps/chebyshev.glsl"
+#include "renderer/shadow_maps/diagnostics.glsl"
+#include "renderer/shadow_maps/footprint.glsl"
+
+// Widest rectangle in texels; technique.cpp has the same.
+const int largest_width = parameter_adaptive == 1 ? 129 : parameter_kernel;
+#include "renderer/shadow_maps/summed_area.glsl"
+
+// Width of the filter, texels: the kernel, or what the pixel covers where that is wider.
+int filter_width(ShadowQuery query, MapPoint point) {
+  if (parameter_adaptive == 0) return parameter_kernel;
+  float covered = ceil(footprint_width(map_footprint(query, point)));
+  return clamp(int(min(covered, float(largest_width))), parameter_kernel, largest_width);
+}
+
+vec2 moments_at(ShadowQuery query, MapPoint point) {
+  return mean_moments(point.texel, point.face, int(map.texel.x), filter_width(query, point));
+}
+
+float calculate_shadow(ShadowQuery query) {
+  MapPoint point = locate(query, 0.5 * float(parameter_kernel));
+  if (point.face < 0) return 1.0;
+  float depth = depth_of_distance(point.distance - point.grant);
+  float deviation = parameter_minimum_deviation * map.range.z;
+  return reduce_bleeding(upper_bound(moments_at(query, point), depth, deviation));
+}
+
+// First face: mean depth over one texel as the table has it, red; over the kernel green; what the map
+// holds blue. All alike where the table is precise and the map flat.
+vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
+  int size = int(map.texel.x);
+  ivec2 texel = ivec2(picture * map.texel.x);
+  vec2 center = vec2(texel) + 0.5;
+  float stored = texelFetch(shadow_map, ivec3(texel, 0), 0).r;
+  return vec4(mean_moments(center, 0, size, 1).x, mean_moments(center, 0, size, parameter_kernel).x,
+              stored, 1.0);
+}
+
+// By their logarithms, full at the widest: texels that a pixel covers red, width of the filter green.
+vec4 draw_diagnostic_filter_width(ShadowQuery query, vec2 picture) {
+  MapPoint point = locate(query, 0.0);
+  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  vec2 widths = vec2(footprint_width(map_footprint(query, point)), float(filter_width(query, point)));
+  return vec4(log2(widths + 1.0) / log2(float(largest_width) + 1.0), 0.0, 1.0);
+}
