@@ -16,7 +16,7 @@ std::string key_of(const ProgramSource& source) {
 
 void append(std::ostringstream& key, const StencilFace& face) {
   key << face.fail << ',' << face.depth_fail << ',' << face.pass << ',' << face.compare << ','
-      << face.reference << ';';
+      << face.reference << ',' << face.compare_mask << ',' << face.write_mask << ';';
 }
 
 std::string key_of(const GraphicsState& state) {
@@ -32,7 +32,8 @@ std::string key_of(const GraphicsState& state) {
 }
 
 VkStencilOpState stencil_state(const StencilFace& face) {
-  return {face.fail, face.pass, face.depth_fail, face.compare, 0xff, 0xff, face.reference};
+  return {face.fail,         face.pass,       face.depth_fail, face.compare,
+          face.compare_mask, face.write_mask, face.reference};
 }
 
 struct VertexLayout {

@@ -55,6 +55,8 @@ struct StencilFace {
   VkStencilOp pass = VK_STENCIL_OP_KEEP;
   VkCompareOp compare = VK_COMPARE_OP_ALWAYS;
   std::uint32_t reference = 0;
+  std::uint32_t compare_mask = 0xff;  ///< bits that are compared
+  std::uint32_t write_mask = 0xff;    ///< bits that change
 };
 
 /// Fixed-function state of a graphics pipeline. Front faces are counter-clockwise in the picture.
