@@ -6,6 +6,9 @@ uniform usampler2D volume_count;
 // 0 .. 255: the stencil wraps.
 uint count_volumes(vec2 pixel) { return texelFetch(volume_count, ivec2(pixel), 0).r; }
 
+// 0 .. 127, where the highest bit marks samples in which volumes were counted.
+uint count_masked_volumes(vec2 pixel) { return count_volumes(pixel) & 0x7fu; }
+
 // Nought is grey; one and more run from yellow over red; what wrapped below nought is blue.
 vec4 picture_of_count(uint count) {
   if (count == 0u) return vec4(0.35, 0.35, 0.35, 1.0);

@@ -27,6 +27,12 @@ vulkan::GraphicsState stencil_state(const PrepareContext& context, const VolumeO
     state.stencil_front.pass = VK_STENCIL_OP_INCREMENT_AND_WRAP;
     state.stencil_back.pass = VK_STENCIL_OP_DECREMENT_AND_WRAP;
   }
+  if (options.masked)
+    for (vulkan::StencilFace* face : {&state.stencil_front, &state.stencil_back}) {
+      face->compare = VK_COMPARE_OP_EQUAL;
+      face->reference = face->compare_mask = mask_bit;
+      face->write_mask = mask_bit - 1;
+    }
   return state;
 }
 
@@ -169,7 +175,7 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   targets.height = context.geometry.height;
   targets.depth = context.geometry.depth.slice(0);
   targets.depth_format = context.geometry.depth.description().format;
-  targets.clear_stencil = true;
+  targets.clear_stencil = !options.masked;
   context.pass("volumes", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
     for (const Step& step : steps) {
@@ -177,6 +183,37 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
       commands.cull(step.cull);
       step.draws->record(commands, context.scene);
     }
+    commands.end_rendering();
+  });
+}
+
+void StencilVolumes::count_fragments(PrepareContext& context, const VolumeOptions& options,
+                                     vulkan::BufferRange counts, std::uint32_t counter) {
+  vulkan::ProgramSource source =
+      volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
+  source.stages[VK_SHADER_STAGE_FRAGMENT_BIT] = "renderer/shadow_volumes/count_fragments.frag";
+  source.preamble += "#define COUNTER " + std::to_string(counter) + "\n";
+  if (options.counting == Counting::behind) source.preamble += "#define WITH_CAPS\n";
+  vulkan::GraphicsState state = stencil_state(context, options);
+  state.depth_test = false;
+  for (vulkan::StencilFace* face : {&state.stencil_front, &state.stencil_back})
+    face->pass = face->depth_fail = VK_STENCIL_OP_KEEP;
+  VolumeDrawOptions wanted;
+  wanted.every_edge = options.every_edge;
+  wanted.clamp = options.clamp;
+  const VolumeDraws draws = list_volume_draws(context, wanted);
+  vulkan::Bindings bindings = context.frame_bindings;
+  bindings.buffer("FragmentCountBlock", counts);
+  vulkan::RenderTargets targets;
+  targets.width = context.geometry.width;
+  targets.height = context.geometry.height;
+  targets.depth = context.geometry.depth.slice(0);
+  targets.depth_format = state.depth_format;
+  const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+  context.pass("count fragments", [&](vulkan::Commands& commands) {
+    commands.begin_rendering(targets);
+    commands.bind(pipeline, bindings);
+    draws.record(commands, context.scene);
     commands.end_rendering();
   });
 }

@@ -21,6 +21,9 @@ std::vector<Parameter> volume_parameters();
 /// The count of volumes as a picture, from picture_of_count.
 Diagnostic count_diagnostic();
 
+/// Of the stencil, with VolumeOptions::masked; as count_masked_volumes in read_stencil.glsl has it.
+constexpr std::uint32_t mask_bit = 0x80;
+
 struct VolumeOptions {
   Counting counting = Counting::behind;
   /// Three sides for every lit triangle instead of silhouettes: needs no adjacency.
@@ -36,6 +39,8 @@ struct VolumeOptions {
   bool automatic = false;
   /// 1: front and back faces in one pass by two-sided stencil; 2: a pass each.
   int stencil_passes = 1;
+  /// Count only in samples whose stencil has mask_bit set, in the bits below it, and clear nothing.
+  bool masked = false;
   /// Decide by the sides' own planes, not by the rasteriser's depths, whether they are crossed
   /// behind the surface, as penumbra wedges decide it. Only for Counting::behind.
   bool exact_sides = false;
@@ -53,6 +58,12 @@ class StencilVolumes {
  public:
   /// Clears the stencil and draws the volumes of all casters, in a pass named "volumes".
   void draw(PrepareContext& context, const VolumeOptions& options);
+
+  /// Adds the number of fragments that draw would have to count, those that the mask lets through,
+  /// to place `counter` of a buffer of 32-bit counts. Draws the volumes once more, in a pass named
+  /// "count fragments", and changes nothing.
+  void count_fragments(PrepareContext& context, const VolumeOptions& options,
+                       vulkan::BufferRange counts, std::uint32_t counter);
 
   /// Names for renderer/shadow_volumes/read_stencil.glsl: "volume_count".
   void bind(vulkan::Bindings& bindings) const;

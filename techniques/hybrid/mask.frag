@@ -1,0 +1,50 @@
+// What the map says of each sample: lit, in shadow, or that its nearest texels disagree and the sample
+// lies at the silhouette of a shadow (Chan and Durand 2004).
+#include "renderer/shadow_maps/depth_map.glsl"
+#include "techniques/hybrid/mask.glsl"
+
+uniform sampler2D geometry_position;
+uniform usampler2D geometry_words;
+
+layout(std430) buffer SampleCountBlock {
+  uint counted_samples;     // that the light faces
+  uint silhouette_samples;  // of these, at silhouettes
+};
+
+layout(location = 0) out float out_mask;
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(geometry_position, texel, 0);
+  out_mask = mask_dark;
+  if (position.w == 0.0) return;
+  Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
+  vec3 center = int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
+  Illumination incoming = illuminate(light, center, surface.position);
+  if (incoming.strength <= 0.0 || dot(surface.geometric_normal, incoming.to_light) <= 0.0) return;
+#ifdef COUNT_SAMPLES
+  atomicAdd(counted_samples, 1u);
+#endif
+  ShadowQuery query;
+  query.position = surface.position;
+  query.normal = surface.geometric_normal;
+  query.shading_normal = surface.shading_normal;
+  query.to_light = incoming.to_light;
+  query.light_distance = incoming.distance;
+  query.pixel = gl_FragCoord.xy;
+  query.point = 0;
+  MapPoint point = locate(query, float(parameter_reach));
+  if (point.face < 0) {
+    out_mask = mask_lit;
+    return;
+  }
+  ivec2 corner = ivec2(floor(point.texel - 0.5)) - (parameter_reach - 1);
+  int side = 2 * parameter_reach;
+  float lit = 0.0;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) lit += compare_texel(point, corner + ivec2(x, y));
+  out_mask = lit == 0.0 ? mask_dark : lit == float(side * side) ? mask_lit : mask_silhouette;
+#ifdef COUNT_SAMPLES
+  if (out_mask == mask_silhouette) atomicAdd(silhouette_samples, 1u);
+#endif
+}
