@@ -30,7 +30,9 @@ std::vector<Parameter> map_parameters() {
   Parameter strategy;
   strategy.name = "bias_strategy";
   strategy.type = ParameterType::choice;
-  strategy.choices = {"constant", "slope", "normal-offset", "receiver-plane", "back-faces"};
+  strategy.choices = {"constant",       "slope",      "normal-offset",
+                      "receiver-plane", "back-faces", "second-depth",
+                      "midpoint",       "dual-depth", "auto"};
   strategy.default_value = std::string("receiver-plane");
   strategy.meaning =
       "How self-shadowing is prevented. constant: depth is moved away from the light, for facets "
@@ -39,7 +41,10 @@ std::vector<Parameter> map_parameters() {
       "receiver is moved along its normal. receiver-plane: every texel is compared with the "
       "receiver's plane at the texel's own place. back-faces: only faces turned away from the "
       "light "
-      "are drawn.";
+      "are drawn. second-depth: the second surface from the light is. midpoint: the middle between "
+      "the "
+      "first two. dual-depth: that, but never far behind the first. auto: receiver-plane, "
+      "and the map moved by as much as that grants, never past the middle.";
   strategy.variant = true;
   list.push_back(strategy);
 
@@ -67,6 +72,17 @@ std::vector<Parameter> map_parameters() {
   list.push_back(slope_scale);
   return list;
 }
+
+namespace {
+
+/// Strategies that ask for the surface behind the first.
+bool knows_two_surfaces(const ParameterValues& parameters) {
+  const std::string& strategy = choice_of(parameters, "bias_strategy");
+  return strategy == "second-depth" || strategy == "midpoint" || strategy == "dual-depth" ||
+         strategy == "auto";
+}
+
+}  // namespace
 
 void DepthMap::draw(PrepareContext& context, double kernel_radius, double border) {
   const ParameterValues& parameters = context.input.parameters;
@@ -96,29 +112,76 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius, double border
                 slope_scale};
   constants_ = context.constants.push(data);
 
+  if (knows_two_surfaces(parameters))
+    draw_layers(context, view);
+  else
+    draw_casters(context, view, image_, "");
+}
+
+void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
+                            const vulkan::Image& target, const std::string& layer) const {
+  const std::string& strategy = choice_of(context.input.parameters, "bias_strategy");
   CasterProgram program;
   program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/depth_map.vert"},
                     {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/depth_map.frag"}};
-  program.preamble = context.declarations;
+  program.preamble = context.declarations + layer;
   program.state.depth_format = VK_FORMAT_D32_SFLOAT;
   program.state.depth_test = program.state.depth_write = true;
   program.state.depth_compare = VK_COMPARE_OP_LESS;
   program.state.depth_clamp = true;
-  if (choice_of(parameters, "bias_strategy") == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
+  if (strategy == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
 
   context.pass("shadow map", [&](vulkan::Commands& commands) {
     for (std::uint32_t face = 0; face < view.faces.size(); ++face) {
       vulkan::RenderTargets targets;
-      targets.width = targets.height = size;
-      targets.depth = image_.slice(face);
+      targets.width = targets.height = target.description().width;
+      targets.depth = target.slice(face);
       targets.depth_format = VK_FORMAT_D32_SFLOAT;
       targets.clear_depth = true;
       targets.depth_clear_value = 1.0f;
       vulkan::Bindings bindings;
       bindings.buffer("MapFaceBlock", context.constants.push(view.faces[face]));
       bindings.buffer("MapBlock", constants_);
+      if (&target == &second_)
+        bindings.texture_slice("first_depths", first_, face, 0, vulkan::Sampling::nearest);
       commands.begin_rendering(targets);
       context.draw_casters(commands, program, bindings, view.faces[face].clip_from_world);
+      commands.end_rendering();
+    }
+  });
+}
+
+void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
+  if (!first_) {
+    first_ = vulkan::Image(context.device, context.memory, "first depths", image_.description());
+    second_ = vulkan::Image(context.device, context.memory, "second depths", image_.description());
+  }
+  draw_casters(context, view, first_, "#define LAYER\n");
+  draw_casters(context, view, second_, "#define LAYER\n#define SECOND_LAYER\n");
+
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/layered_depths.frag"}};
+  source.preamble = context.declarations;
+  vulkan::GraphicsState state;
+  state.depth_format = VK_FORMAT_D32_SFLOAT;
+  state.depth_test = state.depth_write = true;
+  state.depth_compare = VK_COMPARE_OP_ALWAYS;
+  const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+  vulkan::Bindings bindings;
+  bindings.buffer("MapBlock", constants_);
+  bindings.texture("first_depths", first_, vulkan::Sampling::nearest);
+  bindings.texture("second_depths", second_, vulkan::Sampling::nearest);
+  context.pass("layers of depth", [&](vulkan::Commands& commands) {
+    for (std::uint32_t face = 0; face < view.faces.size(); ++face) {
+      vulkan::RenderTargets targets;
+      targets.width = targets.height = image_.description().width;
+      targets.depth = image_.slice(face);
+      targets.depth_format = VK_FORMAT_D32_SFLOAT;
+      commands.begin_rendering(targets);
+      commands.bind(pipeline, bindings);
+      commands.constants(face);
+      commands.full_screen_triangle();
       commands.end_rendering();
     }
   });

@@ -4,6 +4,12 @@
 layout(std140) uniform MapFaceBlock { MapFace face; };
 layout(std140) uniform MapBlock { MapData map; };
 
+#ifdef SECOND_LAYER
+uniform sampler2D first_depths;
+// Positions are floats: this much is lost on the way to a depth.
+float rounding_of_depth() { return exp2(-21.0) * map.range.y * map.range.z; }
+#endif
+
 layout(location = 0) in vec3 world_position;
 #ifdef MASKED
 layout(location = 1) in vec2 surface_uv;
@@ -19,6 +25,15 @@ void main() {
   if (alpha < material.surface.z) discard;
 #endif
   float distance = dot(world_position - face.origin.xyz, face.forward.xyz);
+#ifdef LAYER
+  // One of two layers; layered_depths.frag makes a map of both.
+  gl_FragDepth = clamp((distance - map.range.x) * map.range.z, 0.0, 1.0);
+#ifdef SECOND_LAYER
+  float first = texelFetch(first_depths, ivec2(gl_FragCoord.xy), 0).r;
+  // Facets that meet in an edge lie at one depth, but for rounding.
+  if (gl_FragDepth <= first + 4.0 * rounding_of_depth()) discard;
+#endif
+#else
   float texel = face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
   float bias = map.texel.z;
   if (parameter_bias_strategy == bias_strategy_slope ||
@@ -29,4 +44,5 @@ void main() {
     bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
   gl_FragDepth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
+#endif
 }

@@ -45,14 +45,16 @@ float texel_size(MapFace face, float distance) {
 float texel_reach(float kernel_radius) { return 1.41421356 * (0.5 + kernel_radius); }
 
 /// What the receiver is granted in every comparison, in widths of a texel. The map itself was moved by
-/// the constant bias and, with strategy slope, by the slope of its casters.
+/// the constant bias and, with strategy slope, by the slope of its casters; with those that know two
+/// surfaces, towards the second.
 float granted_texels(float kernel_radius) {
   // What a facet at 45 degrees spans over the kernel.
   if (parameter_bias_strategy == bias_strategy_constant) return 0.5 + kernel_radius;
   // The receiver's plane is known, but bent surfaces leave it. Half a texel and a quarter of the radius
   // make as many pixels too dark as too bright on the survey's scenes.
   if (parameter_bias_strategy == bias_strategy_normal_offset ||
-      parameter_bias_strategy == bias_strategy_receiver_plane)
+      parameter_bias_strategy == bias_strategy_receiver_plane ||
+      parameter_bias_strategy == bias_strategy_auto)
     return 0.5 + 0.25 * kernel_radius;
   return 0.0;
 }
@@ -120,6 +122,7 @@ float receiver_depth(MapPoint point, ivec2 texel) {
   float distance = point.distance;
   // Maps of back faces need it where a body is thinner than its slope over a texel.
   if (parameter_bias_strategy == bias_strategy_receiver_plane ||
+      parameter_bias_strategy == bias_strategy_auto ||
       parameter_bias_strategy == bias_strategy_back_faces) {
     float met = plane_distance(point, vec2(texel) + 0.5 - point.texel);
     distance += map.texel.w * (met - point.distance);

@@ -11,7 +11,7 @@ std::vector<Parameter> map_parameters();
 
 /// A single linear depth map per light: what map techniques are composed from. Depth is the
 /// distance along the map's axis, 0 at near and 1 at far, written per fragment; D32, one layer a
-/// face.
+/// face. Bias strategies that know two surfaces draw both and make the map of them.
 class DepthMap {
  public:
   /// Draws the map for this frame. `kernel_radius` in texels is how far the filter reads from the
@@ -30,7 +30,13 @@ class DepthMap {
   const vulkan::BufferRange& constants() const { return constants_; }
 
  private:
+  void draw_casters(PrepareContext& context, const LightView& view, const vulkan::Image& target,
+                    const std::string& layer) const;
+  void draw_layers(PrepareContext& context, const LightView& view);
+
   vulkan::Image image_;
+  vulkan::Image first_;   ///< nearest surfaces, for strategies that know two
+  vulkan::Image second_;  ///< those behind them
   vulkan::BufferRange constants_;
 };
 

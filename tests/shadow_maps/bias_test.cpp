@@ -24,11 +24,18 @@ class Bias : public testing::TestWithParam<const char*> {};
 /// A map of 512 texels moves a shadow's border by half a texel to either side; acne would make the
 /// picture darker on the whole.
 TEST_P(Bias, needs_no_tuning) {
-  const auto error = error_of(scenes::load(GetParam()), "shadow-map");
-  EXPECT_GT(error.judged, 5000u);
-  EXPECT_NEAR(error.bias, 0.0, 0.004);
-  EXPECT_LT(error.false_shadow, 0.02);
-  EXPECT_LT(error.missing_shadow, 0.02);
+  const auto scene = scenes::load(GetParam());
+  const ImageF truth = HardTruth(*scene).visibility("", size, size);
+  for (const char* strategy : {"receiver-plane", "auto"}) {
+    SCOPED_TRACE(strategy);
+    const RenderResult result =
+        draw(scene, "shadow-map", {{"bias_strategy", std::string(strategy)}}, size);
+    const auto error = metrics::visibility_error(result.visibility, truth, result.judged);
+    EXPECT_GT(error.judged, 5000u);
+    EXPECT_NEAR(error.bias, 0.0, 0.004);
+    EXPECT_LT(error.false_shadow, 0.02);
+    EXPECT_LT(error.missing_shadow, 0.02);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Bias,
@@ -85,6 +92,63 @@ TEST(BiasStrategies, bias_is_in_metres) {
   scene.lights.push_back(lamp({0, 4, 0}, 30));
   EXPECT_EQ(draw(scene, "shadow-map", constant_bias(0.29)).visibility.at(32, 32, 0), 0.0f);
   EXPECT_EQ(draw(scene, "shadow-map", constant_bias(0.31)).visibility.at(32, 32, 0), 1.0f);
+}
+
+/// A receiver that casts nothing, at a height inside or below a box that reaches from 1 m to 2 m:
+/// it is lit down to where the map has the box.
+float lit_at(double height, const std::string& strategy) {
+  Scene scene = empty_scene(height + 0.015, 0.5);
+  add_plate(scene, {-2, -2}, {2, 2}, 0.0);
+  add_box(scene, {-1, 1, -1}, {1, 2, 1});
+  add_plate(scene, {-0.5, -0.5}, {0.5, 0.5}, height, false);
+  scene.lights.push_back(sun());
+  return draw(scene, "shadow-map", {{"bias_strategy", strategy}, {"map_size", std::int64_t{64}}}, 8)
+      .visibility.at(4, 4, 0);
+}
+
+TEST(BiasStrategies, maps_of_two_surfaces_lie_where_they_say) {
+  // A texel is 4 m / 62 = 0.0645 m wide.
+  struct Case {
+    const char* strategy;
+    double below_top;  // m
+  };
+  for (const Case& expected : {Case{"second-depth", 1.0}, Case{"midpoint", 0.5},
+                               Case{"dual-depth", 4.0 * 0.5 * 0.0645},  // slope 4 over half a texel
+                               Case{"auto", 2.0 * 0.5 * 0.0645}}) {     // map and receiver
+    SCOPED_TRACE(expected.strategy);
+    EXPECT_EQ(lit_at(2.0 - expected.below_top + 0.02, expected.strategy), 1.0f);
+    EXPECT_EQ(lit_at(2.0 - expected.below_top - 0.02, expected.strategy), 0.0f);
+  }
+}
+
+TEST(BiasStrategies, a_bias_towards_the_second_surface_leaves_thin_casters_their_shadow) {
+  // Two plates 2 mm apart, on texels of 65 mm, close over the ground.
+  Scene scene = empty_scene(0.05, 0.5);
+  add_plate(scene, {-2, -2}, {2, 2}, 0.0);
+  add_plate(scene, {-1, -1}, {1, 1}, 0.100);
+  add_plate(scene, {-1, -1}, {1, 1}, 0.102);
+  add_plate(scene, {1.8, 1.8}, {2, 2}, 3.0);
+  scene.lights.push_back(sun());
+  const auto lit = [&](const char* strategy) {
+    return draw(scene, "shadow-map",
+                {{"bias_strategy", std::string(strategy)}, {"map_size", std::int64_t{64}}}, 8)
+        .visibility.at(4, 4, 0);
+  };
+  EXPECT_EQ(lit("midpoint"), 0.0f);
+  EXPECT_EQ(lit("dual-depth"), 0.0f);
+  EXPECT_EQ(lit("auto"), 0.0f);
+  EXPECT_EQ(lit("second-depth"), 0.0f);
+}
+
+TEST(BiasStrategies, the_second_surface_of_closed_meshes_needs_no_bias) {
+  const auto scene = scenes::load("boxes");
+  const auto front = error_of(scene, "shadow-map", constant_bias(0.0));
+  for (const char* strategy : {"second-depth", "midpoint"}) {
+    const auto error = error_of(scene, "shadow-map",
+                                {{"bias_strategy", std::string(strategy)}, {"slope_scale", 0.0}});
+    EXPECT_LT(error.false_shadow, 0.1 * front.false_shadow) << strategy;
+    EXPECT_LT(error.missing_shadow, 0.01) << strategy;
+  }
 }
 
 TEST(BiasStrategies, scale_does_not_matter) {

@@ -1,0 +1,31 @@
+// The map to compare with, from the two surfaces that are nearest to the light.
+#include "renderer/shaders/shader_types.h"
+
+layout(std140) uniform MapBlock { MapData map; };
+uniform sampler2DArray first_depths;
+uniform sampler2DArray second_depths;  // 1 where there is no second surface
+
+layout(push_constant) uniform LayerBlock { uint face; } layer;
+
+// How far the map may lie behind the first surface, m.
+float greatest_offset(float first) {
+  MapFace face = map.faces[layer.face];
+  float distance = map.range.x + first / map.range.z;
+  float texel = face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
+  // auto: as much again as receivers are granted, see granted_texels. dual-depth: what a facet spans
+  // over the kernel that rises four units for each across.
+  float texels = parameter_bias_strategy == bias_strategy_auto ? 0.5 + 0.25 * map.texel.y
+                                                               : 4.0 * (0.5 + map.texel.y);
+  return map.texel.w * texels * texel;
+}
+
+void main() {
+  ivec3 texel = ivec3(gl_FragCoord.xy, layer.face);
+  float first = texelFetch(first_depths, texel, 0).r;
+  float second = texelFetch(second_depths, texel, 0).r;
+  float depth = 0.5 * (first + second);  // midpoint
+  if (parameter_bias_strategy == bias_strategy_second_depth) depth = second;
+  if (parameter_bias_strategy == bias_strategy_dual_depth || parameter_bias_strategy == bias_strategy_auto)
+    depth = min(depth, first + greatest_offset(first) * map.range.z);
+  gl_FragDepth = clamp(depth + map.texel.z * map.range.z, 0.0, 1.0);
+}
