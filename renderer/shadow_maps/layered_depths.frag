@@ -25,7 +25,8 @@ void main() {
   float second = texelFetch(second_depths, texel, 0).r;
   float depth = 0.5 * (first + second);  // midpoint
   if (parameter_bias_strategy == bias_strategy_second_depth) depth = second;
-  if (parameter_bias_strategy == bias_strategy_dual_depth || parameter_bias_strategy == bias_strategy_auto)
+  if (parameter_bias_strategy == bias_strategy_dual_depth ||
+      parameter_bias_strategy == bias_strategy_auto)
     depth = min(depth, first + greatest_offset(first) * map.range.z);
   gl_FragDepth = clamp(depth + map.texel.z * map.range.z, 0.0, 1.0);
 }

@@ -3,7 +3,7 @@
 #include "renderer/shadow_maps/half_range.glsl"
 vec4 encode_depth(float depth) {
   float logarithm = parameter_c * depth;
-  return vec4(parameter_filtering == filtering_logarithmic ? logarithm : in_format(exp(logarithm)), 0.0, 0.0,
-              0.0);
+  bool kept = parameter_filtering == filtering_logarithmic;
+  return vec4(kept ? logarithm : in_format(exp(logarithm)), 0.0, 0.0, 0.0);
 }
 #include "renderer/shadow_maps/blurred_map.frag"

@@ -46,8 +46,8 @@ float calculate_shadow(ShadowQuery query) {
   float lit = clamp(1.0 - least_share_before(moments, depth), 0.0, 1.0);
   // The bias of moments leaves a little shadow on what is lit.
   const float nearly_lit = 0.98;
-  return clamp((lit - parameter_bleeding_reduction) / max(nearly_lit - parameter_bleeding_reduction, 1e-3),
-               0.0, 1.0);
+  float reduction = parameter_bleeding_reduction;
+  return clamp((lit - reduction) / max(nearly_lit - reduction, 1e-3), 0.0, 1.0);
 }
 
 // First face: mean depth red, deviation from it green, ten times enlarged.
