@@ -122,6 +122,23 @@ std::string content_hash(const Scene& scene) {
     hasher.number(static_cast<double>(receiver.corners.size()));
     for (const glm::dvec3& corner : receiver.corners) hasher.vector(corner);
   }
+  for (const ShadowPlane& plane : scene.shadow_planes) {
+    hasher.text("shadow plane");
+    hasher.vector(plane.center);
+    hasher.vector(plane.right);
+    hasher.vector(plane.up);
+    hasher.number(plane.size.x);
+    hasher.number(plane.size.y);
+    hasher.text(plane.texture);
+    // The texture is found by its name, so the names of textures are part of the picture here.
+    for (const Texture& texture : scene.textures) hasher.text(texture.name);
+    hasher.number(static_cast<double>(plane.casters.size()));
+    for (const std::string& caster : plane.casters) hasher.text(caster);
+    hasher.number(plane.receivers.empty() ? 0.0 : 1.0);
+    if (plane.receivers.empty()) continue;
+    hasher.vector(plane.receivers.low);
+    hasher.vector(plane.receivers.high);
+  }
   hasher.vector(scene.ambient);
   hasher.vector(scene.background_low);
   hasher.vector(scene.background_high);

@@ -237,7 +237,7 @@ Scene read_document(const json& document, const fs::path& folder) {
   check_named(scene.lights, "lights");
   check_named(scene.cameras, "cameras");
   json surroundings = json::object();
-  for (const char* key : {"receivers", "ambient", "background_low", "background_high", "exposure"})
+  for (const char* key : {"receivers", "shadow_planes", "ambient", "background_low", "background_high", "exposure"})
     if (reader.has(key)) surroundings[key] = reader.at(key);
   read_surroundings(surroundings, "", scene);
   reader.finish();

@@ -167,6 +167,56 @@ void read_material(const json& value, const std::string& path, Material& materia
   reader.finish();
 }
 
+namespace {
+
+json write_shadow_plane(const ShadowPlane& plane) {
+  json value = {{"name", plane.name},
+                {"center", list_of(plane.center)},
+                {"right", list_of(plane.right)},
+                {"up", list_of(plane.up)},
+                {"size", {plane.size.x, plane.size.y}}};
+  if (!plane.texture.empty()) value["texture"] = plane.texture;
+  if (!plane.casters.empty()) value["casters"] = plane.casters;
+  if (!plane.receivers.empty())
+    value["receivers"] = {{"low", list_of(plane.receivers.low)},
+                          {"high", list_of(plane.receivers.high)}};
+  return value;
+}
+
+ShadowPlane read_shadow_plane(const json& value, const std::string& where) {
+  JsonReader entry(value, where);
+  ShadowPlane plane;
+  entry.text("name", plane.name);
+  entry.vector("center", plane.center, -max_coordinate, max_coordinate);
+  entry.vector("right", plane.right, -1.0, 1.0);
+  entry.vector("up", plane.up, -1.0, 1.0);
+  entry.vector("size", plane.size, 1e-9, max_coordinate);
+  entry.text("texture", plane.texture);
+  if (entry.has("casters")) {
+    const json& casters = entry.at("casters");
+    if (!casters.is_array()) entry.fail("casters", "must be a list of names");
+    for (const json& caster : casters) {
+      if (!caster.is_string()) entry.fail("casters", "must be a list of names");
+      plane.casters.push_back(caster.get<std::string>());
+    }
+  }
+  if (entry.has("receivers")) {
+    JsonReader box(entry.at("receivers"), where + ".receivers");
+    glm::dvec3 low(0.0), high(0.0);
+    box.at("low");
+    box.at("high");
+    box.vector("low", low, -max_coordinate, max_coordinate);
+    box.vector("high", high, -max_coordinate, max_coordinate);
+    box.finish();
+    plane.receivers.add(low);
+    plane.receivers.add(high);
+  }
+  entry.finish();
+  return plane;
+}
+
+}  // namespace
+
 json write_surroundings(const Scene& scene) {
   json receivers = json::array();
   for (const PlanarReceiver& receiver : scene.receivers) {
@@ -174,11 +224,14 @@ json write_surroundings(const Scene& scene) {
     for (const glm::dvec3& corner : receiver.corners) corners.push_back(list_of(corner));
     receivers.push_back({{"name", receiver.name}, {"corners", corners}});
   }
-  return {{"receivers", receivers},
-          {"ambient", list_of(scene.ambient)},
-          {"background_low", list_of(scene.background_low)},
-          {"background_high", list_of(scene.background_high)},
-          {"exposure", scene.exposure}};
+  json value = {{"receivers", receivers},
+                {"ambient", list_of(scene.ambient)},
+                {"background_low", list_of(scene.background_low)},
+                {"background_high", list_of(scene.background_high)},
+                {"exposure", scene.exposure}};
+  for (const ShadowPlane& plane : scene.shadow_planes)
+    value["shadow_planes"].push_back(write_shadow_plane(plane));
+  return value;
 }
 
 void read_surroundings(const json& value, const std::string& path, Scene& scene) {
@@ -205,6 +258,13 @@ void read_surroundings(const json& value, const std::string& path, Scene& scene)
       entry.finish();
       scene.receivers.push_back(std::move(receiver));
     }
+  }
+  if (reader.has("shadow_planes")) {
+    if (!reader.at("shadow_planes").is_array()) reader.fail("shadow_planes", "must be a list");
+    for (std::size_t i = 0; i < reader.at("shadow_planes").size(); ++i)
+      scene.shadow_planes.push_back(
+          read_shadow_plane(reader.at("shadow_planes")[i],
+                            reader.path_of("shadow_planes") + "[" + std::to_string(i) + "]"));
   }
   reader.finish();
 }

@@ -1,5 +1,6 @@
 #include "renderer/scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -134,6 +135,29 @@ void validate_camera(const Camera& camera, const std::string& where) {
   check(finite(camera.near_plane) && camera.near_plane > 0.0, where, "near_plane must be above 0");
 }
 
+void validate_shadow_plane(const Scene& scene, const ShadowPlane& plane, const std::string& where) {
+  check(finite(plane.center) && finite(plane.right) && finite(plane.up), where,
+        "has a vector that is not finite");
+  check(std::abs(glm::length(plane.right) - 1.0) < 1e-6 &&
+            std::abs(glm::length(plane.up) - 1.0) < 1e-6 &&
+            std::abs(glm::dot(plane.right, plane.up)) < 1e-6,
+        where, "right and up must be unit vectors across each other");
+  check(std::isfinite(plane.size.x) && std::isfinite(plane.size.y) && plane.size.x > 0.0 &&
+            plane.size.y > 0.0,
+        where, "its size must be above 0");
+  check(plane.texture.empty() ||
+            std::any_of(scene.textures.begin(), scene.textures.end(),
+                        [&](const Texture& texture) { return texture.name == plane.texture; }),
+        where, "names a texture that the scene has not");
+  for (const std::string& caster : plane.casters)
+    check(std::any_of(scene.instances.begin(), scene.instances.end(),
+                      [&](const Instance& instance) { return instance.name == caster; }),
+          where, "names a caster that is no instance of the scene");
+  if (!plane.receivers.empty())
+    check(finite(plane.receivers.low) && finite(plane.receivers.high), where,
+          "its receivers' box is not finite");
+}
+
 void validate_receiver(const PlanarReceiver& receiver, const std::string& where) {
   const auto& corners = receiver.corners;
   check(corners.size() >= 3, where, "needs at least three corners");
@@ -207,6 +231,9 @@ void validate(const Scene& scene) {
     validate_camera(scene.cameras[i], element("cameras", i, scene.cameras[i].name));
   for (std::size_t i = 0; i < scene.receivers.size(); ++i)
     validate_receiver(scene.receivers[i], element("receivers", i, scene.receivers[i].name));
+  for (std::size_t i = 0; i < scene.shadow_planes.size(); ++i)
+    validate_shadow_plane(scene, scene.shadow_planes[i],
+                          element("shadow_planes", i, scene.shadow_planes[i].name));
   validate_names(scene.lights, "lights");
   validate_names(scene.cameras, "cameras");
   check(!scene.cameras.empty(), "cameras", "a scene needs at least one");

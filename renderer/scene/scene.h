@@ -124,6 +124,19 @@ struct PlanarReceiver {
   std::vector<glm::dvec3> corners;
 };
 
+/// A rectangle that stands for casters where receivers are projected onto planes (Coleman 2006): it
+/// cuts them in half, and dark texels on it stop light.
+struct ShadowPlane {
+  std::string name;
+  glm::dvec3 center{0.0};
+  glm::dvec3 right{1.0, 0.0, 0.0};   ///< unit, along the texture's width
+  glm::dvec3 up{0.0, 1.0, 0.0};      ///< unit, across right, along the texture's height
+  glm::dvec2 size{1.0};              ///< metres along right and up
+  std::string texture;               ///< name of a texture; empty: the silhouette of the casters
+  std::vector<std::string> casters;  ///< names of instances; empty: all that cast shadows
+  Bounds receivers;                  ///< shadows only surfaces within; empty: all
+};
+
 /// Everything a picture is made of, in world space: metres, Y up, right-handed, angles in degrees.
 struct Scene {
   std::string id;
@@ -135,6 +148,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;  ///< at least one; the first is the default
   std::vector<PlanarReceiver> receivers;
+  std::vector<ShadowPlane> shadow_planes;
   glm::vec3 ambient{0.08f};              ///< linear, multiplies the base colour
   glm::vec3 background_low{0.5f};        ///< linear, at the horizon and below
   glm::vec3 background_high{0.25f};      ///< linear, straight up

@@ -33,6 +33,10 @@ Scene make_contact();
 Scene make_leaky_box();
 Scene make_camera_in_volume();
 
+/// Models that shadow themselves: one of flat parts, one of round ones (Coleman 2006, 5).
+Scene make_aircraft();
+Scene make_teapot();
+
 /// `sweep:<objects>x<triangles>x<lights>` (van Sambeek 2007, 4.1.1). Throws bad_value (field
 /// "scene") naming the ranges.
 Scene make_sweep(const std::string& name);

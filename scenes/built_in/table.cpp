@@ -26,7 +26,13 @@ const std::vector<BuiltIn>& built_in_table() {
       {"leaky-box", "Closed room that must stay dark",
        "camera inside a closed thin-walled room under a bright light: shows leaks", make_leaky_box},
       {"camera-in-volume", "Camera inside a shadow volume",
-       "camera in the shadow of a wall: shows miscounted volumes", make_camera_in_volume}};
+       "camera in the shadow of a wall: shows miscounted volumes", make_camera_in_volume},
+      {"aircraft", "A jet on an apron",
+       "a model of flat parts that shadow each other: what occluder textures are good at",
+       make_aircraft},
+      {"teapot", "A teapot on a table",
+       "a model of round parts that shadow each other: what occluder textures are bad at",
+       make_teapot}};
   return table;
 }
 

@@ -1,0 +1,127 @@
+#include "techniques/occluder-textures/bodies.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace penumbra::techniques::occluder_textures {
+namespace {
+
+struct Before {
+  bool operator()(const glm::vec3& a, const glm::vec3& b) const {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  }
+};
+
+/// Union-find.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parents_(count) {
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+  }
+  std::size_t root(std::size_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) { parents_[root(b)] = root(a); }
+
+ private:
+  std::vector<std::size_t> parents_;
+};
+
+OrientedBox box_along(const Body& body, const glm::dmat3& axes) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (const Triangle& triangle : body.triangles)
+    for (const glm::dvec3& corner : triangle) {
+      const glm::dvec3 at = glm::transpose(axes) * corner;
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+  return {axes, axes * (0.5 * (low + high)), 0.5 * (high - low)};
+}
+
+/// Principal axes of a symmetric matrix by Jacobi's rotations.
+glm::dmat3 principal_axes(glm::dmat3 m) {
+  glm::dmat3 axes(1.0);
+  for (int sweep = 0; sweep < 16; ++sweep)
+    for (int p = 0; p < 2; ++p)
+      for (int q = p + 1; q < 3; ++q) {
+        if (std::abs(m[q][p]) < 1e-15 * (std::abs(m[p][p]) + std::abs(m[q][q]))) continue;
+        const double angle = 0.5 * std::atan2(2.0 * m[q][p], m[p][p] - m[q][q]);
+        glm::dmat3 turn(1.0);
+        turn[p][p] = turn[q][q] = std::cos(angle);
+        turn[p][q] = std::sin(angle);
+        turn[q][p] = -std::sin(angle);
+        m = glm::transpose(turn) * m * turn;
+        axes = axes * turn;
+      }
+  return axes;
+}
+
+glm::dmat3 principal_axes(const Body& body) {
+  glm::dvec3 mean(0.0);
+  double area = 0.0;
+  const auto area_of = [](const Triangle& t) {
+    return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+  };
+  for (const Triangle& t : body.triangles) {
+    mean += area_of(t) * (t[0] + t[1] + t[2]) / 3.0;
+    area += area_of(t);
+  }
+  if (area > 0.0) mean /= area;
+  glm::dmat3 spread(0.0);
+  // The integral of x x^T over a triangle, up to a factor.
+  for (const Triangle& t : body.triangles) {
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& corner : t) {
+      spread += area_of(t) * glm::outerProduct(corner - mean, corner - mean);
+      sum += corner - mean;
+    }
+    spread += area_of(t) * glm::outerProduct(sum, sum);
+  }
+  return principal_axes(spread);
+}
+
+double thinness(const OrientedBox& box) {
+  return std::min({box.half.x, box.half.y, box.half.z});
+}
+
+}  // namespace
+
+std::vector<Body> find_bodies(const GpuScene& scene) {
+  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 3>>> instances;
+  for (const DrawRange& range : scene.ranges()) {
+    if (!range.casts_shadow) continue;
+    for (std::uint32_t i = 0; i < range.index_count; i += 3) {
+      const std::uint32_t* corner = &scene.indices()[range.first_index + i];
+      instances[range.instance].push_back({corner[0], corner[1], corner[2]});
+    }
+  }
+  std::vector<Body> bodies;
+  for (const auto& [instance, triangles] : instances) {
+    std::map<glm::vec3, std::size_t, Before> first_at;  // the first triangle with this corner
+    Sets sets(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (const std::uint32_t corner : triangles[t])
+        sets.join(first_at.try_emplace(scene.positions()[corner], t).first->second, t);
+    std::map<std::size_t, std::size_t> place;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto [entry, fresh] = place.try_emplace(sets.root(t), bodies.size());
+      if (fresh) bodies.push_back({instance, {}});
+      Triangle triangle;
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle[k] = glm::dvec3(scene.positions()[triangles[t][k]]);
+      bodies[entry->second].triangles.push_back(triangle);
+    }
+  }
+  return bodies;
+}
+
+OrientedBox box_around(const Body& body, const glm::dmat3& axes) {
+  const OrientedBox given = box_along(body, axes);
+  const OrientedBox principal = box_along(body, principal_axes(body));
+  return thinness(principal) < 0.98 * thinness(given) ? principal : given;
+}
+
+}  // namespace penumbra::techniques::occluder_textures

@@ -1,0 +1,218 @@
+#include "techniques/occluder-textures/planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::techniques::occluder_textures {
+namespace {
+
+/// A body is flat where its thickness is less than this part of its second smallest side.
+constexpr double flat = 0.35;
+/// Straight-sided bodies are cut here, in parts of their half thickness from the middle.
+constexpr double near_side = 0.9;
+/// Sections near the sides must have this part of the middle section's area to count as straight.
+constexpr double straight = 0.8;
+
+/// A plane that is wanted, and by which bodies.
+struct Candidate {
+  Rectangle rectangle;  ///< its size is set when all bodies are known
+  double thickness = 0.0;
+  double area = 0.0;
+  std::uint32_t instance = 0;
+  std::vector<const Body*> bodies;
+  bool section = false;  ///< the texture is the body's section, not its silhouette
+};
+
+Rectangle across(const OrientedBox& box, int axis, double offset) {
+  const int right = (axis + 1) % 3;
+  const int up = (axis + 2) % 3;
+  return {box.center + offset * box.half[axis] * box.axes[axis], box.axes[right], box.axes[up],
+          glm::dvec2(2.0 * box.half[right], 2.0 * box.half[up])};
+}
+
+double section_area(const Body& body, const OrientedBox& box, int axis, double offset) {
+  Picture picture(64);
+  picture.add_section(across(box, axis, offset), body);
+  return picture.filled();
+}
+
+void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candidate>& list) {
+  std::array<int, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return box.half[a] < box.half[b]; });
+  const auto add = [&](int axis, double offset, bool section) {
+    Candidate candidate;
+    candidate.rectangle = across(box, axis, offset);
+    candidate.thickness = 2.0 * box.half[axis];
+    candidate.area = candidate.rectangle.size.x * candidate.rectangle.size.y;
+    candidate.instance = body.instance;
+    candidate.bodies = {&body};
+    candidate.section = section;
+    if (candidate.area > 0.0) list.push_back(candidate);
+  };
+  if (box.half[order[0]] <= flat * box.half[order[1]]) {
+    add(order[0], 0.0, false);
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double middle = section_area(body, box, axis, 0.0);
+    const double sides = std::min(section_area(body, box, axis, near_side),
+                                  section_area(body, box, axis, -near_side));
+    if (middle > 0.0 && sides >= straight * middle) {
+      add(axis, near_side, true);
+      add(axis, -near_side, true);
+    } else {
+      add(axis, 0.0, false);
+    }
+  }
+}
+
+/// Whether b's bodies may as well be cut by a's plane.
+bool coincide(const Candidate& a, const Candidate& b) {
+  if (a.instance != b.instance || a.section || b.section) return false;
+  const glm::dvec3 normal = a.rectangle.normal();
+  if (std::abs(glm::dot(normal, b.rectangle.normal())) < 0.9998) return false;
+  const double offset = std::abs(glm::dot(normal, b.rectangle.center - a.rectangle.center));
+  return offset < 0.25 * std::max(a.thickness, b.thickness);
+}
+
+/// Candidates that coincide become one, in the plane of the thinnest body: that one must be cut.
+std::vector<Candidate> merged(std::vector<Candidate> list) {
+  std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) {
+    return a.thickness < b.thickness;
+  });
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : list) {
+    const auto like = std::find_if(result.begin(), result.end(), [&](const Candidate& other) {
+      return coincide(other, candidate);
+    });
+    if (like == result.end()) {
+      result.push_back(candidate);
+      continue;
+    }
+    like->area += candidate.area;
+    like->bodies.insert(like->bodies.end(), candidate.bodies.begin(), candidate.bodies.end());
+  }
+  return result;
+}
+
+/// Moves and sizes a rectangle to hold bodies, with a margin of two texels.
+void fit(Rectangle& rectangle, const std::vector<const Body*>& bodies, std::uint32_t resolution) {
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high = -low;
+  for (const Body* body : bodies)
+    for (const Triangle& triangle : body->triangles)
+      for (const glm::dvec3& corner : triangle) {
+        const glm::dvec3 offset = corner - rectangle.center;
+        const glm::dvec2 at(glm::dot(offset, rectangle.right), glm::dot(offset, rectangle.up));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+      }
+  const glm::dvec2 middle = 0.5 * (low + high);
+  rectangle.center += middle.x * rectangle.right + middle.y * rectangle.up;
+  rectangle.size = (high - low) * (resolution / (resolution - 4.0));
+}
+
+void draw_silhouettes(OccluderPlane& plane, const std::vector<const Body*>& casters,
+                      const std::vector<Body>& all, const PlaneOptions& options) {
+  for (const Body* body : casters) plane.picture.add_silhouette(plane.rectangle, *body);
+  if (options.extend == 0) return;
+  Picture inside(options.resolution);
+  for (const Body& body : all) inside.add_section(plane.rectangle, body);
+  plane.picture.extend_within(inside, options.extend);
+}
+
+}  // namespace
+
+PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
+  const std::vector<Body> bodies = find_bodies(scene);
+  std::vector<Candidate> list;
+  for (const Body& body : bodies) {
+    glm::dmat3 axes(scene.scene().instances[body.instance].world_from_object);
+    for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
+    axes[1] = glm::normalize(axes[1] - axes[0] * glm::dot(axes[0], axes[1]));
+    axes[2] = glm::cross(axes[0], axes[1]);
+    add_candidates(body, box_around(body, axes), list);
+  }
+  list = merged(std::move(list));
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
+  if (list.size() > options.most_planes) list.resize(options.most_planes);
+  PlaneSet set;
+  set.bodies = bodies.size();
+  std::vector<const Body*> represented;
+  for (Candidate& candidate : list) {
+    OccluderPlane plane;
+    plane.rectangle = candidate.rectangle;
+    plane.picture = Picture(options.resolution);
+    fit(plane.rectangle, candidate.bodies, options.resolution);
+    if (candidate.section)
+      plane.picture.add_section(plane.rectangle, *candidate.bodies.front());
+    else
+      draw_silhouettes(plane, candidate.bodies, bodies, options);
+    represented.insert(represented.end(), candidate.bodies.begin(), candidate.bodies.end());
+    set.planes.push_back(std::move(plane));
+  }
+  std::sort(represented.begin(), represented.end());
+  represented.erase(std::unique(represented.begin(), represented.end()), represented.end());
+  set.represented = represented.size();
+  return set;
+}
+
+namespace {
+
+/// Dark and opaque texels of a scene's texture stop light.
+void draw_texture(Picture& picture, const Texture& texture) {
+  for (std::uint32_t y = 0; y < picture.size(); ++y)
+    for (std::uint32_t x = 0; x < picture.size(); ++x) {
+      // Row 0 of a texture is on top.
+      const std::uint32_t tx = (2 * x + 1) * texture.width / (2 * picture.size());
+      const std::uint32_t ty =
+          texture.height - 1 - (2 * y + 1) * texture.height / (2 * picture.size());
+      const std::uint8_t* texel = &texture.rgba[4 * (std::size_t{ty} * texture.width + tx)];
+      const double luminance = 0.299 * texel[0] + 0.587 * texel[1] + 0.114 * texel[2];
+      picture.texels()[std::size_t{y} * picture.size() + x] =
+          static_cast<std::uint8_t>(std::lround((255.0 - luminance) * texel[3] / 255.0));
+    }
+}
+
+bool is_named(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options) {
+  const std::vector<Body> bodies = find_bodies(scene);
+  PlaneSet set;
+  set.bodies = bodies.size();
+  std::vector<bool> represented(bodies.size(), false);
+  for (const ShadowPlane& authored : scene.scene().shadow_planes) {
+    OccluderPlane plane;
+    plane.rectangle = {authored.center - scene.origin(), authored.right, authored.up,
+                       authored.size};
+    plane.picture = Picture(options.resolution);
+    if (!authored.receivers.empty()) {
+      plane.receivers.add(authored.receivers.low - scene.origin());
+      plane.receivers.add(authored.receivers.high - scene.origin());
+    }
+    const auto& textures = scene.scene().textures;
+    const auto texture = std::find_if(textures.begin(), textures.end(),
+                                      [&](const Texture& t) { return t.name == authored.texture; });
+    std::vector<const Body*> casters;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (is_named(authored.casters, scene.scene().instances[bodies[i].instance].name)) {
+        casters.push_back(&bodies[i]);
+        represented[i] = true;
+      }
+    if (!authored.texture.empty() && texture != textures.end())
+      draw_texture(plane.picture, *texture);
+    else
+      draw_silhouettes(plane, casters, bodies, options);
+    set.planes.push_back(std::move(plane));
+  }
+  set.represented =
+      static_cast<std::size_t>(std::count(represented.begin(), represented.end(), true));
+  return set;
+}
+
+}  // namespace penumbra::techniques::occluder_textures

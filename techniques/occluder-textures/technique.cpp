@@ -1,0 +1,170 @@
+#include "renderer/frame/prepare_context.h"
+#include "techniques/occluder-textures/planes.h"
+
+namespace penumbra::techniques {
+namespace {
+
+using occluder_textures::OccluderPlane;
+using occluder_textures::PlaneSet;
+
+/// OccluderPlaneData of shadow.glsl.
+struct PlaneData {
+  glm::vec4 center, normal, right, up, low, high;
+};
+
+PlaneData data_of(const OccluderPlane& plane) {
+  const auto& rectangle = plane.rectangle;
+  const glm::vec3 everywhere(std::numeric_limits<float>::max());
+  PlaneData data;
+  data.center = glm::vec4(rectangle.center, 1.0);
+  data.normal = glm::vec4(rectangle.normal(), 0.0);
+  data.right = glm::vec4(rectangle.right / rectangle.size.x, 0.0);
+  data.up = glm::vec4(rectangle.up / rectangle.size.y, 0.0);
+  const bool bounded = !plane.receivers.empty();
+  data.low = glm::vec4(bounded ? glm::vec3(plane.receivers.low) : -everywhere, 0.0f);
+  data.high = glm::vec4(bounded ? glm::vec3(plane.receivers.high) : everywhere, 0.0f);
+  return data;
+}
+
+/// Planes with textures of the casters' silhouettes; receivers are projected onto them.
+class OccluderTextures : public Technique {
+ public:
+  void require(const TechniqueInput&, Requirements& needs) override {
+    // Which planes are worth one hangs on all casters together.
+    needs.casters = CasterUse::all;
+  }
+
+  void prepare(PrepareContext& context) override {
+    if (textures_) return;
+    const ParameterValues& parameters = context.input.parameters;
+    occluder_textures::PlaneOptions options;
+    options.resolution = static_cast<std::uint32_t>(integer_of(parameters, "resolution"));
+    options.most_planes = static_cast<std::uint32_t>(integer_of(parameters, "planes"));
+    options.extend = static_cast<std::uint32_t>(integer_of(parameters, "extend"));
+    const bool authored =
+        !context.scene.scene().shadow_planes.empty() && choice_of(parameters, "source") == "scene";
+    const PlaneSet set = authored ? occluder_textures::authored_planes(context.scene, options)
+                                  : occluder_textures::generate_planes(context.scene, options);
+    sampling_ =
+        boolean_of(parameters, "bilinear") ? vulkan::Sampling::linear : vulkan::Sampling::nearest;
+    upload_planes(context, set);
+    upload_textures(context, set, options.resolution);
+    context.notes.push_back(std::to_string(set.planes.size()) +
+                            (authored ? " planes of the scene" : " generated planes") +
+                            " stand for " + std::to_string(set.represented) + " of " +
+                            std::to_string(set.bodies) + " bodies");
+  }
+
+  void bind(vulkan::Bindings& bindings) const override {
+    bindings.buffer("OccluderPlaneBlock", planes_.whole());
+    bindings.texture("occluder_textures", textures_, sampling_);
+  }
+
+ private:
+  void upload_planes(PrepareContext& context, const PlaneSet& set) {
+    const glm::uvec4 count(set.planes.size(), 0, 0, 0);
+    std::vector<std::byte> bytes(sizeof(count) + set.planes.size() * sizeof(PlaneData));
+    std::memcpy(bytes.data(), &count, sizeof(count));
+    for (std::size_t i = 0; i < set.planes.size(); ++i) {
+      const PlaneData data = data_of(set.planes[i]);
+      std::memcpy(bytes.data() + sizeof(count) + i * sizeof(data), &data, sizeof(data));
+    }
+    planes_ = upload(context.device, context.memory, "occluder planes", bytes.data(), bytes.size(),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  }
+
+  void upload_textures(PrepareContext& context, const PlaneSet& set, std::uint32_t resolution) {
+    vulkan::ImageDescription description;
+    description.format = VK_FORMAT_R8_UNORM;
+    description.width = description.height = resolution;
+    description.layers = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(set.planes.size()));
+    description.array_view = true;
+    description.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    textures_ = vulkan::Image(context.device, context.memory, "occluder textures", description);
+    const std::size_t layer_bytes = std::size_t{resolution} * resolution;
+    vulkan::MemoryLedger passing;
+    const vulkan::Buffer staging(context.device, passing, "occluder textures staging",
+                                 layer_bytes * description.layers, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                 vulkan::MemoryKind::upload);
+    auto* bytes = static_cast<std::uint8_t*>(staging.mapped());
+    std::memset(bytes, 0, layer_bytes * description.layers);
+    for (std::size_t i = 0; i < set.planes.size(); ++i)
+      std::memcpy(bytes + i * layer_bytes, set.planes[i].picture.texels().data(), layer_bytes);
+    vulkan::run_now(context.device, [&](VkCommandBuffer commands) {
+      VkBufferImageCopy copy{};
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, description.layers};
+      copy.imageExtent = {resolution, resolution, 1};
+      vkCmdCopyBufferToImage(commands, staging.handle(), textures_.handle(),
+                             VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    });
+  }
+
+  vulkan::Image textures_;
+  vulkan::Buffer planes_;
+  vulkan::Sampling sampling_ = vulkan::Sampling::linear;
+};
+
+Parameter integer_parameter(const char* name, std::int64_t value, double low, double high,
+                            const char* unit, const char* meaning) {
+  Parameter parameter;
+  parameter.name = name;
+  parameter.type = ParameterType::integer;
+  parameter.default_value = value;
+  parameter.minimum = low;
+  parameter.maximum = high;
+  parameter.unit = unit;
+  parameter.meaning = meaning;
+  return parameter;
+}
+
+Parameter boolean_parameter(const char* name, const char* meaning) {
+  Parameter parameter;
+  parameter.name = name;
+  parameter.type = ParameterType::boolean;
+  parameter.default_value = true;
+  parameter.meaning = meaning;
+  return parameter;
+}
+
+}  // namespace
+
+TechniqueDescription describe_occluder_textures();
+TechniqueDescription describe_occluder_textures() {
+  Parameter source;
+  source.name = "source";
+  source.type = ParameterType::choice;
+  source.choices = {"scene", "generated"};
+  source.default_value = std::string("scene");
+  source.meaning =
+      "scene: the planes that the scene's author placed, and generated ones where there are none. "
+      "generated: always those.";
+  Parameter resolution = integer_parameter("resolution", 256, 16, 1024, "texels",
+                                           "Width and height of every occluder texture.");
+  resolution.scale = ParameterScale::logarithmic;
+
+  TechniqueDescription description;
+  description.id = "occluder-textures";
+  description.label = "OT";
+  description.title = "Occluder textures";
+  description.family = "receiver";
+  description.source = "Coleman 2006, 4 and 5";
+  description.parameters = {
+      source,
+      resolution,
+      integer_parameter("planes", 16, 1, 64, "",
+                        "Most planes that are generated; those with the largest silhouettes are "
+                        "kept."),
+      integer_parameter("extend", 4, 0, 32, "texels",
+                        "How far silhouettes are continued into other bodies that the plane cuts, "
+                        "so that shadows reach what they start at."),
+      boolean_parameter("sign_test",
+                        "A plane shadows only what lies behind it as the light sees it. Without "
+                        "this, planes cast false shadows towards the light."),
+      boolean_parameter("bilinear", "Mix the four nearest texels instead of taking the nearest.")};
+  description.diagnostics = {{"textures", "The occluder textures side by side."}};
+  description.shader = "techniques/occluder-textures/shadow.glsl";
+  description.create = [] { return std::make_unique<OccluderTextures>(); };
+  return description;
+}
+
+}  // namespace penumbra::techniques
