@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct RenderRequest {
   std::uint64_t seed = 1;
   bool visibility = false;               ///< also return one visibility channel per light
   bool linear = false;                   ///< also return linear light before encoding
+  bool uncertainty = false;              ///< also tell the error that finitely many light points leave
   std::string diagnostic;                ///< name of a diagnostic picture of the technique, or empty
   std::uint32_t frames = 1;              ///< counted frames; above 1 one uncounted frame goes first
   PlanRules rules;
@@ -86,6 +88,9 @@ struct RenderResult {
   ImageF judged;                 ///< a channel per light: share of the pixel that faces the light
                                  ///< inside its cone, where visibility means something
   Image8 diagnostic;             ///< RGBA, when asked for
+  ImageF uncertainty;            ///< standard error of Y of the encoded picture, 0..255; when asked for
+                                 ///< and known, which takes a multiple of 16 points for each sample
+  std::optional<double> noise_rms_y;  ///< root mean square of `uncertainty`: what it adds to rms_y
   std::vector<std::string> light_names;
   Cost cost;
   std::uint64_t non_finite_pixels = 0;  ///< encoded as magenta

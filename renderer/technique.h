@@ -50,6 +50,7 @@ struct Requirements {
   std::uint32_t light_points = 1;       ///< points on the extent asked for one by one; 1: its centre
   bool shade_each_point = false;        ///< light from each point, not from the centre
   bool random_points = false;           ///< points from a seeded generator, not low-discrepancy
+  bool scrambles = false;               ///< points in 16 independent sets, whose spread tells the error
 };
 
 /// A way to find the visibility of one light. An instance serves one light of one render; the core

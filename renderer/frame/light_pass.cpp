@@ -37,12 +37,15 @@ LightPass::LightPass(const FrameSetup& setup, const Light& light)
   sets_ = setup_.side * setup_.side;
   if (needs_.light_points > 1) {
     const auto make = [&](std::uint32_t per_pixel, std::uint32_t least) {
-      return light_points(light_, std::max(least, per_pixel / sets_), sets_, setup_.request.seed,
-                          needs_.random_points);
+      const std::uint32_t per_set = std::max(least, per_pixel / sets_);
+      const bool divides = per_set % Uncertainty::scrambles == 0;
+      return light_points(light_, per_set, sets_, setup_.request.seed, needs_.random_points,
+                          needs_.scrambles && divides ? Uncertainty::scrambles : 1);
     };
     points_ = make(needs_.light_points, 1);
     few_points_ = make(few_per_pixel, few_per_sample);
-    if (few_points_.size() > points_.size()) few_points_ = points_;
+    if (few_points_.size() > points_.size() || needs_.random_points) few_points_ = points_;
+    has_scrambles_ = needs_.scrambles && points_.size() / sets_ % Uncertainty::scrambles == 0;
   } else {
     const glm::dvec3 center =
         light.kind == LightKind::directional ? -light_.direction : light_.position;
@@ -69,6 +72,11 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
   const std::uint32_t batches = batch_count(points_.size() / sets_);
   const bool many = needs_.light_points > 1;
   if (many) clear_sum(frame);
+  const bool uncertain = has_scrambles_ && frame.uncertainty != nullptr;
+  if (frame.uncertainty != nullptr)
+    frame.recorder.pass("uncertainty", [&](vulkan::Commands& commands) {
+      frame.uncertainty->clear_sums(commands);
+    });
   const VkDeviceSize constants_mark = frame.constants.mark();
   for (std::uint32_t index = 0; index < batches; ++index) {
     // A light with many points is cut into submissions, so that it can report and be cancelled;
@@ -112,6 +120,10 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
     after_batch(static_cast<double>(index + 1) / batches);
   }
   if (many) add_sum(frame, last_bindings_);
+  if (uncertain) {
+    frame.recorder.flush();
+    frame.uncertainty->add_light(frame.device, *frame.light_sum);
+  }
 }
 
 std::string LightPass::program_path(vulkan::ShaderLibrary& library, const std::string& head) const {
@@ -207,10 +219,13 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
   std::string preamble = setup_.declarations;
   if (needs_.shade_each_point) preamble += "#define SHADE_EACH_POINT\n";
   if (list != nullptr) preamble += "#define WITH_SAMPLE_LIST\n";
+  const bool uncertain = has_scrambles_ && frame.uncertainty != nullptr;
+  if (uncertain) preamble += "#define WITH_UNCERTAINTY\n";
   const vulkan::Pipeline& pipeline = frame.pipelines.compute(
       program_path(frame.library, "renderer/shaders/shade_points.glsl"), preamble);
   vulkan::Bindings all = shading_bindings(frame, bindings, pipeline);
   all.storage_image("light_sum", *frame.light_sum);
+  if (uncertain) all.storage_image("scramble_sums", frame.uncertainty->sums());
   all.buffer("LightBlock", frame.constants.push(
                                light_data(light_, static_cast<float>(batch.count), batch.weight)));
   if (list != nullptr) all.buffer("SampleBlock", list->texels.whole());
@@ -219,6 +234,8 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
     for (std::uint32_t set = 0; set < sets_; ++set) {
       all.buffer("LightPointBlock",
                  frame.constants.push_array(points.subspan(set * batch_size, batch_size)));
+      // Samples of a pixel add to the same sums.
+      if (uncertain && set > 0) commands.barrier();
       commands.bind(pipeline, all);
       SampleWork work;
       work.set = set;
@@ -245,7 +262,9 @@ void LightPass::draw_diagnostic(const Frame& frame, const std::string& name,
   vulkan::GraphicsState state;
   state.color_formats = {target.description().format};
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);
-  const vulkan::Bindings all = shading_bindings(frame, last_bindings_, pipeline);
+  vulkan::Bindings all = shading_bindings(frame, last_bindings_, pipeline);
+  if (frame.uncertainty != nullptr)
+    all.texture("scramble_sums", frame.uncertainty->sums(), vulkan::Sampling::nearest);
   frame.recorder.pass("diagnostic", [&](vulkan::Commands& commands) {
     vulkan::RenderTargets targets;
     targets.width = frame.geometry.width;

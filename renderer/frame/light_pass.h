@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "renderer/frame/prepare_context.h"
+#include "renderer/frame/uncertainty.h"
 #include "renderer/render.h"
 
 namespace penumbra {
@@ -27,6 +28,8 @@ class LightPass {
   LightPass(const FrameSetup& setup, const Light& light);
 
   const Requirements& needs() const { return needs_; }
+  /// Whether its error is known: it is exact, or its points come in scrambles.
+  bool tells_error() const { return needs_.light_points <= 1 || has_scrambles_; }
   const std::vector<ResourceCost>& memory() const { return ledger_.entries; }
 
   struct Frame {
@@ -38,6 +41,7 @@ class LightPass {
     const GeometryBuffer& geometry;
     const vulkan::Image* visibility;  ///< samples of this light, or null
     const vulkan::Image* light_sum;   ///< sums over light points, where a light has many
+    Uncertainty* uncertainty;         ///< or null
     vulkan::Bindings frame_bindings;
     std::uint32_t frame_index;
     std::vector<std::string>& notes;
@@ -74,7 +78,8 @@ class LightPass {
   std::unique_ptr<Technique> technique_;
   std::vector<glm::vec4> points_;      ///< all points, set after set
   std::vector<glm::vec4> few_points_;  ///< for samples that nothing hides the light from
-  std::uint32_t sets_ = 1;             ///< samples of a pixel, each with its own points
+  bool has_scrambles_ = false;
+  std::uint32_t sets_ = 1;  ///< samples of a pixel, each with its own points
   vulkan::MemoryLedger ledger_;
   vulkan::Bindings last_bindings_;
 };

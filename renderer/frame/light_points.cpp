@@ -154,37 +154,66 @@ shader::LightData light_data(const WorldLight& world, float points, float weight
   return data;
 }
 
-std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
-                                    std::uint32_t sets, std::uint64_t seed, bool random) {
-  std::vector<glm::vec4> points;
-  points.reserve(std::size_t{count} * sets);
-  const bool directional = light.kind == LightKind::directional;
-  std::mt19937_64 generator(seed);
-  const auto random_unit = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
-  std::array<std::array<std::uint32_t, 32>, 3> v;
-  for (int d = 0; d < 3; ++d) v[static_cast<std::size_t>(d)] = direction_numbers(d);
-  for (std::uint32_t set = 0; set < sets; ++set) {
-    std::vector<std::pair<std::uint32_t, glm::dvec3>> ordered;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      glm::dvec3 u(0.5);
-      for (int d = 0; d < 3; ++d) {
-        const auto k = static_cast<std::size_t>(d);
-        u[d] = random ? random_unit()
-                      : unit(scramble(sobol(v[k], set * count + i), mix(seed * 3 + k)));
-      }
-      const glm::dvec3 offset = extent_offset(*light.source, u);
-      const auto cell = [](double x) {
-        return static_cast<std::uint32_t>(std::clamp(x, 0.0, 1.0) * 65535.0);
-      };
-      ordered.emplace_back(spread(cell(u.x)) | spread(cell(u.y)) << 1, offset);
+namespace {
+
+/// Points of the unit cube: one scramble of one sequence, or random ones.
+class PointSource {
+ public:
+  PointSource(std::uint64_t seed, bool random) : seed_(seed), random_(random), generator_(seed) {
+    for (int d = 0; d < 3; ++d) numbers_[static_cast<std::size_t>(d)] = direction_numbers(d);
+  }
+  glm::dvec3 point(std::uint32_t index) {
+    glm::dvec3 u(0.5);
+    for (int d = 0; d < 3; ++d) {
+      const auto k = static_cast<std::size_t>(d);
+      u[d] = random_ ? (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53
+                     : unit(scramble(sobol(numbers_[k], index), mix(seed_ * 3 + k)));
     }
-    std::stable_sort(ordered.begin(), ordered.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [code, offset] : ordered) {
-      const glm::dvec3 moved =
-          offset.x * light.right + offset.y * light.up + offset.z * light.direction;
-      points.emplace_back(
-          directional ? glm::normalize(moved - light.direction) : light.position + moved, 0.0);
+    return u;
+  }
+
+ private:
+  std::uint64_t seed_;
+  bool random_;
+  std::mt19937_64 generator_;
+  std::array<std::array<std::uint32_t, 32>, 3> numbers_;
+};
+
+/// Places on the unit square in an order that keeps neighbours together (Morton's).
+std::uint32_t morton_code(const glm::dvec3& u) {
+  const auto cell = [](double x) {
+    return static_cast<std::uint32_t>(std::clamp(x, 0.0, 1.0) * 65535.0);
+  };
+  return spread(cell(u.x)) | spread(cell(u.y)) << 1;
+}
+
+}  // namespace
+
+std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
+                                    std::uint32_t sets, std::uint64_t seed, bool random,
+                                    std::uint32_t scrambles) {
+  const bool directional = light.kind == LightKind::directional;
+  const std::uint32_t each = count / scrambles;
+  std::vector<glm::vec4> points(std::size_t{each} * scrambles * sets);
+  const bool independent = random || (scrambles > 1 && count * sets >= least_independent);
+  for (std::uint32_t scramble = 0; scramble < scrambles; ++scramble) {
+    PointSource source(independent && scrambles > 1 ? mix(seed ^ mix(scramble)) : seed, random);
+    for (std::uint32_t set = 0; set < sets; ++set) {
+      const std::uint32_t first = independent ? set * each : set * count + scramble * each;
+      std::vector<std::pair<std::uint32_t, glm::dvec3>> ordered;
+      for (std::uint32_t i = 0; i < each; ++i) {
+        const glm::dvec3 u = source.point(first + i);
+        ordered.emplace_back(morton_code(u), extent_offset(*light.source, u));
+      }
+      std::stable_sort(ordered.begin(), ordered.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+      for (std::uint32_t i = 0; i < each; ++i) {
+        const glm::dvec3& offset = ordered[i].second;
+        const glm::dvec3 moved =
+            offset.x * light.right + offset.y * light.up + offset.z * light.direction;
+        points[(std::size_t{set} * each + i) * scrambles + scramble] = glm::vec4(
+            directional ? glm::normalize(moved - light.direction) : light.position + moved, 0.0);
+      }
     }
   }
   return points;

@@ -29,8 +29,15 @@ shader::LightData light_data(const WorldLight& light, float points, float weight
 /// pixel, set after set; within a set, neighbours in order are neighbours in space, so that runs of
 /// 32 are compact. Low-discrepancy: Sobol' points with Owen's scrambling from `seed`; the sets are
 /// consecutive parts of one sequence. Random: independent, from a Mersenne twister.
+/// With several `scrambles`, which divide `count`, a set consists of as many parts: point i belongs
+/// to part i % scrambles, and neighbours in order are neighbours in space still. Parts are
+/// scrambled independently where a pixel has least_independent points or more, so that their spread
+/// tells the error. Fewer points would lose too much by that: they stay one sequence, of which the
+/// parts are consecutive pieces, and the spread tells an upper estimate.
+inline constexpr std::uint32_t least_independent = 256;
 std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
-                                    std::uint32_t sets, std::uint64_t seed, bool random);
+                                    std::uint32_t sets, std::uint64_t seed, bool random,
+                                    std::uint32_t scrambles = 1);
 
 /// Corners of a box around the extent in the light's own axes: half sizes along right, up,
 /// direction.

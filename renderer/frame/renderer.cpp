@@ -11,6 +11,7 @@
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/read_back.h"
 #include "renderer/frame/scene_pass.h"
+#include "renderer/frame/uncertainty.h"
 #include "renderer/reference/intersector.h"
 #include "renderer/render.h"
 #include "renderer/scene/plan.h"
@@ -148,6 +149,8 @@ class FrameRun {
                                     plan_.lights.begin());
   }
   FaultCounts fault_counts() const;
+  bool tells_uncertainty() const;
+  void read_uncertainty(RenderResult& result);
   void add_shared_memory(vulkan::MemoryLedger& memory) const;
 
   Renderer::State& state_;
@@ -158,6 +161,7 @@ class FrameRun {
   FrameSetup setup_;
   std::vector<std::unique_ptr<LightPass>> lights_;
   vulkan::MemoryLedger targets_ledger_;
+  std::unique_ptr<Uncertainty> uncertainty_;
   GeometryBuffer geometry_;
   vulkan::Image picture_, linear_, light_sum_, visibility_samples_, visibility_, diagnostic_;
   std::uint32_t frames_total_ = 1;
@@ -207,7 +211,16 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
   picture_ = make_target("picture", picture_format, request.width, request.height);
   if (many_points)
     light_sum_ = make_target("light sums", linear_format, setup_.width, setup_.height);
-  if (request.linear)
+  for (const auto& light : lights_)
+    if (light && light->needs().scrambles && !request.diagnostic.empty() && !tells_uncertainty())
+      throw unsupported("the error of this picture is not known: that takes a multiple of 16 light "
+                        "samples for each sample of a pixel, and no more than " +
+                            std::to_string(Uncertainty::max_pixels) + " pixels",
+                        "light_samples");
+  if (tells_uncertainty())
+    uncertainty_ = std::make_unique<Uncertainty>(state.device, targets_ledger_, request.width,
+                                                 request.height, setup_.side);
+  if (request.linear || uncertainty_)
     linear_ = make_target("linear picture", linear_format, request.width, request.height);
   if (request.visibility && !lights_.empty()) {
     visibility_samples_ =
@@ -265,6 +278,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
   std::memset(state_.faults.mapped(), 0, state_.faults.size());
   state_.recorder.clear_records();
   const vulkan::Bindings bindings = frame_bindings(index);
+  if (uncertainty_) uncertainty_->begin_frame();
   state_.recorder.begin(count_statistics);
   state_.recorder.pass("geometry", [&](vulkan::Commands& commands) {
     draw_geometry(commands, state_.pipelines, setup_.scene, geometry_, bindings,
@@ -280,6 +294,7 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
                                  geometry_,
                                  request_.visibility ? &visibility_samples_ : nullptr,
                                  &light_sum_,
+                                 uncertainty_.get(),
                                  bindings,
                                  index,
                                  notes_};
@@ -299,6 +314,21 @@ void FrameRun::draw_frame(std::uint32_t index, bool count_statistics) {
                        " shader invocations ended before their work was done");
 }
 
+/// Asked for, or shown by the technique's own picture, and known.
+bool FrameRun::tells_uncertainty() const {
+  if (!request_.uncertainty && request_.diagnostic.empty()) return false;
+  if (std::uint64_t{request_.width} * request_.height > Uncertainty::max_pixels) return false;
+  return std::all_of(lights_.begin(), lights_.end(),
+                     [](const auto& light) { return !light || light->tells_error(); });
+}
+
+void FrameRun::read_uncertainty(RenderResult& result) {
+  const ImageF linear = read_float(state_.device, linear_, 4);
+  result.uncertainty = uncertainty_->standard_error(linear, request_.scene->exposure,
+                                                    gamma_treatment(setup_.parameters).encodes);
+  result.noise_rms_y = root_mean_square(result.uncertainty);
+}
+
 FaultCounts FrameRun::fault_counts() const {
   FaultCounts counts;
   std::memcpy(&counts, state_.faults.mapped(), sizeof(counts));
@@ -312,7 +342,7 @@ void FrameRun::resolve(const vulkan::Bindings& bindings) {
   vulkan::GraphicsState state;
   state.color_formats = {picture_format};
   vulkan::RenderTargets targets{request_.width, request_.height, {{picture_.slice(0), false, {}}}};
-  if (request_.linear) {
+  if (linear_) {
     source.preamble = "#define WITH_LINEAR\n";
     state.color_formats.push_back(linear_format);
     targets.colors.push_back({linear_.slice(0), false, {}});
@@ -384,6 +414,7 @@ void FrameRun::read_results(RenderResult& result) {
       }
     }
   }
+  if (uncertainty_ && request_.uncertainty) read_uncertainty(result);
   if (diagnostic_) result.diagnostic = read_rgba8(state_.device, diagnostic_);
   result.non_finite_pixels = fault_counts().non_finite_pixels;
   vulkan::MemoryLedger memory;

@@ -17,11 +17,7 @@ void main() {
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
   Illumination from_center = illuminate(light, light_center(), surface.position);
   vec4 mean = texelFetch(light_sum, texel, 0);
-#ifdef SHADE_EACH_POINT
   out_radiance = vec4(mean.rgb, 0.0);
-#else
-  out_radiance = vec4(mean.a * reflect_light(light, from_center, surface), 0.0);
-#endif
 #ifdef WITH_VISIBILITY
   out_visibility = is_judged(surface, from_center) ? vec2(mean.a, 1.0) : vec2(0.0);
 #endif

@@ -15,6 +15,9 @@ using glm::vec4;
 
 // Light points handled by one batch: one bit each in a mask.
 PENUMBRA_CONSTANT int points_per_batch = 32;
+// Independent sets that the points of a light come in, where its technique asks for them: place i of a
+// batch belongs to set i % scramble_count.
+PENUMBRA_CONSTANT int scramble_count = 16;
 // Most samples of a pixel.
 PENUMBRA_CONSTANT int max_supersampling = 16;
 

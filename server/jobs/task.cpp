@@ -27,9 +27,6 @@ constexpr std::uint32_t fewest_frames = 1;
 /// part of it, and nobody gains by waiting for it again.
 constexpr double longest_repeated_ms = 10000.0;
 
-/// The second reference for the noise estimate has this share of the first one's samples.
-constexpr std::uint32_t noise_share = 4;
-
 json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
@@ -130,19 +127,6 @@ json measure_quality(const Task& task, const RenderResult& drawn, const Image8& 
           {"missing_shadow", judged(error.missing_shadow)}};
 }
 
-/// Root mean square of the reference's own error, from a second one with other samples. With
-/// independent samples of variance v/N and v/(N/s) the difference has variance (1 + s) v/N. The
-/// default set converges faster than that, which makes this an upper estimate.
-json measure_noise(Renderer& renderer, const Task& task, const RenderResult& drawn,
-                   const std::function<void(double)>& progress) {
-  RenderRequest second = to_render_request(task.request);
-  if (second.light_samples < noise_share) return nullptr;
-  second.light_samples /= noise_share;
-  second.seed += 1;
-  const RenderResult other = renderer.render(second, progress);
-  return metrics::rms_y(drawn.picture, other.picture) / std::sqrt(1.0 + noise_share);
-}
-
 /// Maps the parts of a task onto one bar.
 class Parts {
  public:
@@ -180,12 +164,13 @@ json device_to_json(const DeviceInfo& device) {
 TaskResult run_task(Renderer& renderer, const Task& task,
                     const std::function<void(double)>& progress) {
   const auto wanted = [&task](const char* name) { return task.wants.contains(name); };
-  Parts parts(progress, 1 + int{wanted(want::cost)} + int{wanted(want::noise)});
+  Parts parts(progress, 1 + int{wanted(want::cost)});
 
   // Draw once with everything that the wanted files are made of.
   RenderRequest request = to_render_request(task.request);
   request.visibility = wanted(want::visibility) || wanted(want::quality);
   request.linear = wanted(want::linear);
+  request.uncertainty = wanted(want::noise);
   TaskResult result;
   RenderResult drawn;
   if (wanted(want::cost)) {
@@ -217,7 +202,7 @@ TaskResult run_task(Renderer& renderer, const Task& task,
     if (wanted(want::quality))
       result.quality = measure_quality(task, drawn, reference, result.notes);
   }
-  if (wanted(want::noise)) result.noise_rms_y = measure_noise(renderer, task, drawn, parts.next());
+  if (drawn.noise_rms_y) result.noise_rms_y = *drawn.noise_rms_y;
   return result;
 }
 

@@ -65,8 +65,10 @@ TEST_F(ReferencePicture, ShowsTheClosedFormPenumbraOfAnEdge) {
       partly += truth > 0.0 && truth < 1.0;
     }
   EXPECT_GT(partly, 500u);
-  // One of 1024 points, and 0.3 mm of receiver offset at 3 per metre.
-  EXPECT_LT(worst, 0.004);
+  // Each of 16 scrambles has a point in every 64th of the light's width: its share errs by the
+  // difference of two uniform numbers over 64, with a standard deviation of 1/(64 sqrt 6), and the
+  // mean of all by a quarter of that. Five of these, and 0.3 mm of receiver offset at 3 per metre.
+  EXPECT_LT(worst, 5.0 / (64.0 * std::sqrt(6.0) * 4.0) + 0.001);
   EXPECT_LT(std::abs(sum / (wanted.width * wanted.height)), 0.001);
 }
 
@@ -232,8 +234,9 @@ TEST_F(ReferencePicture, ChargesHierarchyAndMaskToTheTechnique) {
 }
 
 TEST_F(ReferencePicture, SoftensWithTheRaysOfRayTracing) {
-  const RenderResult reference =
-      render(request("half-plane", "reference", {{"mode", "visibility"}}));
+  RenderRequest wanted = request("half-plane", "reference", {{"mode", "visibility"}});
+  wanted.light_samples = 1024;
+  const RenderResult reference = render(wanted);
   double last = 1.0;
   for (const std::int64_t rays : {1, 8, 64}) {
     const RenderResult traced = render(request("half-plane", "ray-traced", {{"rays", rays}}));
@@ -242,7 +245,7 @@ TEST_F(ReferencePicture, SoftensWithTheRaysOfRayTracing) {
     EXPECT_LT(rms, 0.5 * last) << rays << " rays";
     last = rms;
   }
-  EXPECT_EQ(last, 0.0);
+  EXPECT_LT(last, 0.01);
 }
 
 }  // namespace
