@@ -13,6 +13,10 @@ constexpr double near_side = 0.9;
 /// Sections near the sides must have this part of the middle section's area to count as straight.
 constexpr double straight = 0.8;
 
+/// A plane through the middle must meet this part of the silhouette: one that cuts a bent body in
+/// thin air would shadow the body itself.
+constexpr double met = 0.5;
+
 /// A plane that is wanted, and by which bodies.
 struct Candidate {
   Rectangle rectangle;  ///< its size is set when all bodies are known
@@ -36,6 +40,12 @@ double section_area(const Body& body, const OrientedBox& box, int axis, double o
   return picture.filled();
 }
 
+bool meets_silhouette(const Body& body, const OrientedBox& box, int axis) {
+  Picture picture(64);
+  picture.add_silhouette(across(box, axis, 0.0), body);
+  return section_area(body, box, axis, 0.0) >= met * picture.filled();
+}
+
 void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candidate>& list) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int a, int b) { return box.half[a] < box.half[b]; });
@@ -50,7 +60,7 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
     if (candidate.area > 0.0) list.push_back(candidate);
   };
   if (box.half[order[0]] <= flat * box.half[order[1]]) {
-    add(order[0], 0.0, false);
+    if (meets_silhouette(body, box, order[0])) add(order[0], 0.0, false);
     return;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -60,7 +70,7 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
     if (middle > 0.0 && sides >= straight * middle) {
       add(axis, near_side, true);
       add(axis, -near_side, true);
-    } else {
+    } else if (meets_silhouette(body, box, axis)) {
       add(axis, 0.0, false);
     }
   }
