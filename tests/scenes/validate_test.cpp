@@ -21,7 +21,7 @@ struct Fault {
 TEST(Validate, NamesTheElementAtFault) {
   const double infinite = std::numeric_limits<double>::infinity();
   const std::vector<Fault> faults = {
-      {"textures[0] 'tiles': rgba", [](Scene& s) { s.textures[0].rgba.pop_back(); }},
+      {"textures[0] 'tiles 8': rgba", [](Scene& s) { s.textures[0].rgba.pop_back(); }},
       {"materials[1] 'wood': texture", [](Scene& s) { s.materials[1].texture = 7; }},
       {"materials[0]", [](Scene& s) { s.materials[0].base_color.x = NAN; }},
       {"meshes[1] 'standing': needs one normal", [](Scene& s) { s.meshes[1].normals.pop_back(); }},
