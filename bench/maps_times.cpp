@@ -1,8 +1,8 @@
 // What filters of maps cost over the width of their kernel, as Adorjan 2013, table 4.1:
-// bench_maps_times [--scene ID] [--frames N] [--pairs N] [--device NAME]
+// bench_maps_times [--part table|doubling|all] [--scene ID] [--frames N] [--pairs N] [--device X]
 //
 // 1024x768 pixels, a map of 1024x1024. First a table of device time per frame, then how much a
-// summed- area variance shadow map costs with a kernel twice as wide, over interleaved pairs.
+// savsm costs with a kernel twice as wide, over interleaved pairs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +18,7 @@ namespace {
 using namespace penumbra;
 
 struct Options {
+  std::string part = "all";
   std::string scene = "boxes";
   std::uint32_t frames = 9;
   int pairs = 15;
@@ -28,7 +29,9 @@ Options read_options(int count, char** values) {
   Options options;
   for (int i = 1; i + 1 < count; i += 2) {
     const std::string name = values[i];
-    if (name == "--scene")
+    if (name == "--part")
+      options.part = values[i + 1];
+    else if (name == "--scene")
       options.scene = values[i + 1];
     else if (name == "--frames")
       options.frames = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
@@ -37,7 +40,8 @@ Options read_options(int count, char** values) {
     else if (name == "--device")
       options.device = values[i + 1];
     else
-      throw bad_value(name, "bench_maps_times takes --scene, --frames, --pairs and --device");
+      throw bad_value(name,
+                      "bench_maps_times takes --part, --scene, --frames, --pairs and --device");
   }
   return options;
 }
@@ -152,8 +156,8 @@ int main(int count, char** values) {
     std::printf("Device: %s (%s). Scene %s, 1024x768, map 1024x1024, median of %u frames.\n\n",
                 timer.device().name.c_str(), timer.device().driver.c_str(), options.scene.c_str(),
                 options.frames);
-    print_table(timer);
-    print_doubling(timer, options.pairs);
+    if (options.part != "doubling") print_table(timer);
+    if (options.part != "table") print_doubling(timer, options.pairs);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_maps_times: %s\n", error.what());
