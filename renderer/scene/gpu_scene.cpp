@@ -91,8 +91,8 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
     high_ = to_world(bounds.high);
   }
   flatten();
-  constexpr VkBufferUsageFlags vertex =
-      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  // Not storage buffers, whose size is limited: a scene may be larger.
+  constexpr VkBufferUsageFlags vertex = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
   positions_ = upload(device, ledger_, "positions", position_list_.data(),
                       position_list_.size() * 12, vertex);
