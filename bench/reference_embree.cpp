@@ -17,6 +17,7 @@
 #include "renderer/error.h"
 #include "renderer/frame/light_points.h"
 #include "renderer/frame/transforms.h"
+#include "renderer/reference/occlusion_mask.h"
 #include "renderer/render.h"
 #include "renderer/scene/gpu_scene.h"
 #include "scenes/library.h"
@@ -197,7 +198,7 @@ int run(const std::string& name, std::uint32_t size, std::uint32_t samples, int 
                      std::vector<bool>(scene->textures.size(), true));
   const EmbreeProgram embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
-  const float offset = 2e-5f * glm::length(gpu.high() - gpu.low());
+  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
   const std::vector<Receiver> receivers = embree.receivers(camera, size, offset);
 
   Renderer renderer({"", false});

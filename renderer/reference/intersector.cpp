@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "renderer/error.h"
+#include "renderer/vulkan/texel_view.h"
 
 namespace penumbra::reference {
 namespace {
@@ -139,21 +139,10 @@ const Intersector& Intersector::of(vulkan::Device& device, const GpuScene& scene
 Intersector::TexelBuffer Intersector::make(vulkan::Device& device, const std::string& name,
                                            const void* data, std::size_t bytes, VkFormat format,
                                            std::size_t texel_bytes) {
-  const std::size_t limit = device.properties.limits.maxTexelBufferElements;
-  if (bytes / texel_bytes > limit)
-    throw unsupported("the scene has too many triangles for exact shadows on this device: " + name +
-                      " take " + std::to_string(bytes / texel_bytes) + " of at most " +
-                      std::to_string(limit) + " texels");
   TexelBuffer made;
   made.buffer =
       upload(device, ledger_, name, data, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
-  info.buffer = made.buffer.handle();
-  info.format = format;
-  info.range = VK_WHOLE_SIZE;
-  VkBufferView view = VK_NULL_HANDLE;
-  vulkan::check(vkCreateBufferView(device.handle, &info, nullptr, &view), "vkCreateBufferView");
-  made.view = {device.handle, view};
+  made.view = vulkan::texel_view(device, name, made.buffer, format, texel_bytes);
   return made;
 }
 

@@ -9,10 +9,6 @@ namespace {
 
 constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch);
 
-/// Distance of a receiver from its facet, per metre of the scene's diagonal: rounding of positions
-/// is below 1e-6 of it.
-constexpr float receiver_offset = 2e-5f;
-
 /// Lists of occluders: places of a sample, and what all lists of a light may take together.
 constexpr std::uint64_t most_occluders = 64;
 constexpr std::uint64_t least_occluders = 8;

@@ -6,9 +6,14 @@
 
 namespace penumbra::reference {
 
+/// Distance of a receiver from its facet, per metre of the scene's diagonal. Every ray passes what
+/// it should touch by as much: 2e-5 moved borders of shadows in 0.16 % of the island's pixels.
+/// Rounding of positions shows up as acne at 3e-7.
+constexpr float receiver_offset = 3e-6f;
+
 /// For every sample of the frame and every light point of a batch: is the segment between them (or
 /// the ray towards a directional light) cut by a caster? One bit each; exact up to float rounding.
-/// Receivers start 2e-5 of the scene's diagonal above their facet.
+/// Receivers start receiver_offset of the scene's diagonal above their facet.
 class OcclusionMask {
  public:
   /// Nodes that one dispatch walks: far below the 65,535 rounds after which some drivers end loops.

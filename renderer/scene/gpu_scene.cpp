@@ -91,8 +91,9 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
     high_ = to_world(bounds.high);
   }
   flatten();
-  // Not storage buffers, whose size is limited: a scene may be larger.
-  constexpr VkBufferUsageFlags vertex = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+  // Texel buffers, not storage buffers, whose size is limited: a scene may be larger.
+  constexpr VkBufferUsageFlags vertex =
+      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
   positions_ = upload(device, ledger_, "positions", position_list_.data(),
                       position_list_.size() * 12, vertex);
@@ -204,9 +205,10 @@ const SceneAdjacency& GpuScene::adjacency(vulkan::Device& device) const {
     auto made = std::make_unique<SceneAdjacency>();
     made->host = build_adjacency(position_list_, index_list_, ranges_);
     vulkan::MemoryLedger ledger;
-    made->indices =
-        upload(device, ledger, "adjacency", made->host.indices.data(),
-               made->host.indices.size() * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    made->indices = upload(
+        device, ledger, "adjacency", made->host.indices.data(),
+        made->host.indices.size() * sizeof(std::uint32_t),
+        VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     made->host.indices = {};
     adjacency_ = std::move(made);
   }

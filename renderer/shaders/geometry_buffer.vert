@@ -10,6 +10,9 @@ layout(location = 1) out vec3 world_normal;
 layout(location = 2) out vec2 surface_uv;
 layout(location = 3) out vec4 vertex_color;
 
+// Caps of shadow volumes must come to the same depth.
+invariant gl_Position;
+
 void main() {
   world_position = position;
   world_normal = normal;

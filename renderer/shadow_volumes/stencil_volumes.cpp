@@ -36,6 +36,15 @@ vulkan::GraphicsState stencil_state(const PrepareContext& context, const VolumeO
   return state;
 }
 
+vulkan::RenderTargets targets_of(const PrepareContext& context) {
+  vulkan::RenderTargets targets;
+  targets.width = context.geometry.width;
+  targets.height = context.geometry.height;
+  targets.depth = context.geometry.depth.slice(0);
+  targets.depth_format = context.geometry.depth.description().format;
+  return targets;
+}
+
 void note_ignored_masks(PrepareContext& context) {
   for (const DrawRange& range : context.scene.ranges())
     if (range.masked && range.casts_shadow) {
@@ -90,21 +99,52 @@ struct StencilVolumes::Step {
   vulkan::Bindings bindings;
   const VolumeDraws* draws;
   VkCullModeFlags cull;
+  bool open_caps;  ///< of open meshes only, at their own triangles
+
+  void record(vulkan::Commands& commands, const GpuScene& scene) const {
+    commands.bind(*pipeline, bindings);
+    commands.cull(cull);
+    if (open_caps)
+      draws->record_open_caps(commands);
+    else
+      draws->record(commands, scene);
+  }
+};
+
+/// Where to count fragments instead of volumes.
+struct StencilVolumes::Counter {
+  vulkan::BufferRange counts;
+  std::uint32_t place;
+
+  void apply(vulkan::ProgramSource& source, vulkan::GraphicsState& state,
+             vulkan::Bindings& bindings) const {
+    source.stages[VK_SHADER_STAGE_FRAGMENT_BIT] = "renderer/shadow_volumes/count_fragments.frag";
+    source.preamble += "#define COUNTER " + std::to_string(place) + "\n";
+    state.depth_test = false;
+    for (vulkan::StencilFace* face : {&state.stencil_front, &state.stencil_back})
+      face->pass = face->depth_fail = VK_STENCIL_OP_KEEP;
+    bindings.buffer("FragmentCountBlock", counts);
+  }
 };
 
 void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& options,
-                               const VolumeDraws& draws, std::vector<Step>& steps) {
-  const auto add = [&](const vulkan::Pipeline& pipeline) {
-    if (options.stencil_passes == 1) {
-      steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_NONE});
-      return;
-    }
-    steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_BACK_BIT});
-    steps.push_back({&pipeline, context.frame_bindings, &draws, VK_CULL_MODE_FRONT_BIT});
+                               const VolumeDraws& draws, std::vector<Step>& steps,
+                               const Counter* counter) {
+  const auto add = [&](vulkan::ProgramSource source, vulkan::GraphicsState state, bool open_caps) {
+    vulkan::Bindings bindings = context.frame_bindings;
+    if (open_caps) bind_corners(bindings, context);
+    if (counter != nullptr) counter->apply(source, state, bindings);
+    const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+    const bool two_sided = options.stencil_passes == 1;
+    steps.push_back({&pipeline, bindings, &draws,
+                     two_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT, open_caps});
+    if (two_sided) return;
+    steps.push_back(steps.back());
+    steps.back().cull = VK_CULL_MODE_FRONT_BIT;
   };
   vulkan::ProgramSource source =
       volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
-  const vulkan::GraphicsState state = stencil_state(context, options);
+  vulkan::GraphicsState state = stencil_state(context, options);
   if (options.counting == Counting::behind) source.preamble += "#define WITH_CAPS\n";
   if (options.exact_sides) {
     vulkan::ProgramSource sides =
@@ -115,10 +155,16 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
     every_depth.depth_test = false;
     every_depth.stencil_front.pass = state.stencil_front.depth_fail;
     every_depth.stencil_back.pass = state.stencil_back.depth_fail;
-    add(context.pipelines.graphics(sides, every_depth));
+    add(sides, every_depth, false);
     source.preamble += "#define CAPS_ONLY\n";
   }
-  add(context.pipelines.graphics(source, state));
+  add(source, state, false);
+  if (options.counting == Counting::before || !draws.any_open()) return;
+  vulkan::ProgramSource caps;
+  caps.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_volumes/open_cap.vert"}};
+  state.vertex_input = vulkan::VertexInput::none;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  add(caps, state, true);
 }
 
 void StencilVolumes::add_near_caps(PrepareContext& context, const VolumeOptions& options,
@@ -134,7 +180,7 @@ void StencilVolumes::add_near_caps(PrepareContext& context, const VolumeOptions&
   bindings.buffer("NearPlaneBlock", context.constants.push(*near_from_caster));
   const auto source = volume_program("renderer/shadow_volumes/near_cap.geom", options.every_edge);
   steps.push_back(
-      {&context.pipelines.graphics(source, state), bindings, &draws, VK_CULL_MODE_NONE});
+      {&context.pipelines.graphics(source, state), bindings, &draws, VK_CULL_MODE_NONE, false});
 }
 
 void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
@@ -157,11 +203,11 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
       return !in_shadow(low, high);
     };
     outside = list_volume_draws(context, wanted);
-    add_steps(context, before, outside, steps);
+    add_steps(context, before, outside, steps, nullptr);
     wanted.accept = in_shadow;
   }
   draws = list_volume_draws(context, wanted);
-  add_steps(context, options, draws, steps);
+  add_steps(context, options, draws, steps, nullptr);
   if (options.near_caps) {
     // Caps need not be clamped or culled but for the pyramid between light and near plane.
     wanted.clamp = false;
@@ -170,50 +216,28 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
     add_near_caps(context, options, near_plane, shading_camera, steps);
   }
 
-  vulkan::RenderTargets targets;
-  targets.width = context.geometry.width;
-  targets.height = context.geometry.height;
-  targets.depth = context.geometry.depth.slice(0);
-  targets.depth_format = context.geometry.depth.description().format;
+  vulkan::RenderTargets targets = targets_of(context);
   targets.clear_stencil = !options.masked;
   context.pass("volumes", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
-    for (const Step& step : steps) {
-      commands.bind(*step.pipeline, step.bindings);
-      commands.cull(step.cull);
-      step.draws->record(commands, context.scene);
-    }
+    for (const Step& step : steps) step.record(commands, context.scene);
     commands.end_rendering();
   });
 }
 
 void StencilVolumes::count_fragments(PrepareContext& context, const VolumeOptions& options,
                                      vulkan::BufferRange counts, std::uint32_t counter) {
-  vulkan::ProgramSource source =
-      volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
-  source.stages[VK_SHADER_STAGE_FRAGMENT_BIT] = "renderer/shadow_volumes/count_fragments.frag";
-  source.preamble += "#define COUNTER " + std::to_string(counter) + "\n";
-  if (options.counting == Counting::behind) source.preamble += "#define WITH_CAPS\n";
-  vulkan::GraphicsState state = stencil_state(context, options);
-  state.depth_test = false;
-  for (vulkan::StencilFace* face : {&state.stencil_front, &state.stencil_back})
-    face->pass = face->depth_fail = VK_STENCIL_OP_KEEP;
   VolumeDrawOptions wanted;
   wanted.every_edge = options.every_edge;
   wanted.clamp = options.clamp;
   const VolumeDraws draws = list_volume_draws(context, wanted);
-  vulkan::Bindings bindings = context.frame_bindings;
-  bindings.buffer("FragmentCountBlock", counts);
-  vulkan::RenderTargets targets;
-  targets.width = context.geometry.width;
-  targets.height = context.geometry.height;
-  targets.depth = context.geometry.depth.slice(0);
-  targets.depth_format = state.depth_format;
-  const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+  const Counter into{counts, counter};
+  std::vector<Step> steps;
+  add_steps(context, options, draws, steps, &into);
+  const vulkan::RenderTargets targets = targets_of(context);
   context.pass("count fragments", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
-    commands.bind(pipeline, bindings);
-    draws.record(commands, context.scene);
+    for (const Step& step : steps) step.record(commands, context.scene);
     commands.end_rendering();
   });
 }

@@ -70,8 +70,10 @@ class StencilVolumes {
 
  private:
   struct Step;
+  struct Counter;
+  /// Counts volumes, or with a counter the fragments that would.
   void add_steps(PrepareContext& context, const VolumeOptions& options, const VolumeDraws& draws,
-                 std::vector<Step>& steps);
+                 std::vector<Step>& steps, const Counter* counter);
   void add_near_caps(PrepareContext& context, const VolumeOptions& options,
                      const NearPlane& near_plane, const VolumeDraws& draws,
                      std::vector<Step>& steps);

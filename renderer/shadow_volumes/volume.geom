@@ -55,17 +55,14 @@ void main() {
   for (int k = 0; k < 3; ++k)
     end[k] = frame.clip_from_world * end_of_shadow(world_position[k * stride]);
 #ifdef WITH_CAPS
-  // The cap keeps its first corner, so that turning it over does not change its depth.
-  vec4 first = gl_in[0].gl_Position;
-  vec4 second = gl_in[stride].gl_Position;
-  vec4 third = gl_in[2 * stride].gl_Position;
-  if (lit) {
-    emit(first, second, third);
+  // Caps of open meshes at their own triangles are drawn by open_cap.vert. A cap keeps its first
+  // corner, so that turning it over does not change its depth.
+  if (volume.every_triangle == 0u)
+    emit(gl_in[0].gl_Position, gl_in[2 * stride].gl_Position, gl_in[stride].gl_Position);
+  if (lit)
     emit(end[0], end[2], end[1]);
-  } else {
-    emit(first, third, second);
+  else
     emit(end[0], end[1], end[2]);
-  }
 #endif
 #ifndef CAPS_ONLY
   for (int k = 0; k < 3; ++k) {

@@ -1,8 +1,32 @@
 #include "renderer/shadow_volumes/volume_draws.h"
 
+#include <algorithm>
+
 #include "renderer/shadow_volumes/volume_bounds.h"
+#include "renderer/vulkan/texel_view.h"
 
 namespace penumbra::shadow_volumes {
+namespace {
+
+/// Corners of casters as a shader fetches them.
+struct CornerViews {
+  vulkan::Owned<VkBufferView> indices, positions;
+};
+
+const CornerViews& corner_views(const PrepareContext& context) {
+  return context.scene.derived<CornerViews>([&] {
+    auto views = std::make_shared<CornerViews>();
+    views->indices =
+        vulkan::texel_view(context.device, "neighbours of triangles", context.adjacency->indices,
+                           VK_FORMAT_R32_UINT, sizeof(std::uint32_t));
+    views->positions =
+        vulkan::texel_view(context.device, "positions", context.scene.position_buffer(),
+                           VK_FORMAT_R32_SFLOAT, sizeof(float));
+    return views;
+  });
+}
+
+}  // namespace
 
 void VolumeDraws::record(vulkan::Commands& commands, const GpuScene& scene) const {
   const VkBuffer buffer = scene.position_buffer().handle();
@@ -13,6 +37,24 @@ void VolumeDraws::record(vulkan::Commands& commands, const GpuScene& scene) cons
     commands.constants(draw.constants);
     vkCmdDrawIndexed(commands.handle(), draw.index_count, 1, draw.first_index, 0, 0);
   }
+}
+
+void VolumeDraws::record_open_caps(vulkan::Commands& commands) const {
+  // Six indices with adjacency stand for the three corners of a triangle.
+  for (const Draw& draw : draws)
+    if (draw.constants.every_triangle != 0u)
+      vkCmdDraw(commands.handle(), draw.index_count / 2, 1, draw.first_index / 2, 0);
+}
+
+bool VolumeDraws::any_open() const {
+  return std::any_of(draws.begin(), draws.end(),
+                     [](const Draw& draw) { return draw.constants.every_triangle != 0u; });
+}
+
+void bind_corners(vulkan::Bindings& bindings, const PrepareContext& context) {
+  const CornerViews& views = corner_views(context);
+  bindings.texel_buffer("adjacency_indices", views.indices);
+  bindings.texel_buffer("caster_positions", views.positions);
 }
 
 VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOptions& options) {

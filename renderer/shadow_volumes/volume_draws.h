@@ -23,6 +23,9 @@ struct VolumeDraws {
 
   /// Binds vertices and indices and draws all; a pipeline must be bound.
   void record(vulkan::Commands& commands, const GpuScene& scene) const;
+  /// Draws the triangles of open meshes as open_cap.vert wants them.
+  void record_open_caps(vulkan::Commands& commands) const;
+  bool any_open() const;
 };
 
 struct VolumeDrawOptions {
@@ -39,6 +42,9 @@ struct VolumeDrawOptions {
 };
 
 VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOptions& options);
+
+/// Names that open_cap.vert reads.
+void bind_corners(vulkan::Bindings& bindings, const PrepareContext& context);
 
 /// Program stages and topology that all volumes begin with.
 vulkan::ProgramSource volume_program(const std::string& geometry_shader, bool every_edge);

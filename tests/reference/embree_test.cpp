@@ -31,7 +31,7 @@ Verdict compare(const std::shared_ptr<const Scene>& scene, std::uint32_t count) 
   const Embree embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
   const std::vector<Receiver> receivers = embree.receivers(camera, size);
-  const float offset = 2e-5f * glm::length(gpu.high() - gpu.low());
+  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
   Verdict verdict;
   for (const Light& light : scene->lights) {
     const WorldLight world = world_light(light, gpu.origin());

@@ -80,7 +80,7 @@ TEST_F(ReferenceUncertainty, PassesATestOfEveryPixelAgainstEmbreesOwnScrambles) 
   const Embree embree(gpu);
   const auto receivers =
       embree.receivers(camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0), size);
-  const float offset = 2e-5f * glm::length(gpu.high() - gpu.low());
+  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
   const WorldLight light = world_light(scene->lights.front(), gpu.origin());
   const auto points = light_points(light, samples, 1, 12345, false, 16);
 

@@ -33,20 +33,27 @@ inline RenderResult draw(const Scene& scene, const std::string& technique,
   return renderer().render(request);
 }
 
-/// Where the ray through the middle of a pixel of a square picture meets the plane y = 0.
-inline glm::dvec3 ground_point(const Camera& camera, std::uint32_t x, std::uint32_t y) {
+struct Ray {
+  glm::dvec3 from;
+  glm::dvec3 along;  ///< perspective: at depth 1; otherwise unit
+};
+
+/// Through the middle of a pixel of a square picture.
+inline Ray camera_ray(const Camera& camera, std::uint32_t x, std::uint32_t y, std::uint32_t width) {
   const glm::dvec3 forward = glm::normalize(camera.target - camera.position);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
   const glm::dvec3 up = glm::cross(right, forward);
-  const double u = 2.0 * (x + 0.5) / size - 1.0;
-  const double v = 1.0 - 2.0 * (y + 0.5) / size;
-  glm::dvec3 from = camera.position;
-  glm::dvec3 along = forward;
-  if (camera.projection == Projection::perspective)
-    along += std::tan(glm::radians(0.5 * camera.vertical_fov)) * (u * right + v * up);
-  else
-    from += 0.5 * camera.orthographic_height * (u * right + v * up);
-  return from - along * (from.y / along.y);
+  const glm::dvec3 across =
+      (2.0 * (x + 0.5) / width - 1.0) * right + (1.0 - 2.0 * (y + 0.5) / width) * up;
+  if (camera.projection == Projection::orthographic)
+    return {camera.position + 0.5 * camera.orthographic_height * across, forward};
+  return {camera.position, forward + std::tan(glm::radians(0.5 * camera.vertical_fov)) * across};
+}
+
+/// Where that ray meets the plane y = 0, in a picture of the default size.
+inline glm::dvec3 ground_point(const Camera& camera, std::uint32_t x, std::uint32_t y) {
+  const Ray ray = camera_ray(camera, x, y, size);
+  return ray.from - ray.along * (ray.from.y / ray.along.y);
 }
 
 /// Whether the segment between two points touches a box.
