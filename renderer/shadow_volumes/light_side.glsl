@@ -17,6 +17,14 @@ bool is_before(vec3 a, vec3 b) {
 // corners sorted first: whoever asks, and in whatever order, gets the same bits, and a triangle is
 // turned to the light exactly where its mirror image is not. So both sides of an edge always agree
 // on whether it is a silhouette, and volumes have no gaps.
+//
+// FIRST_CORNER, from the preamble, takes the direction to the corner that is named first, in whatever
+// order. On paper that comes to the same, for all corners lie in the plane; rounding decides otherwise.
+#ifdef FIRST_CORNER
+bool is_lit(vec3 a, vec3 b, vec3 c) {
+  return dot(cross(b - a, c - a), is_directional() ? -light.direction.xyz : light.position.xyz - a) >= 0.0;
+}
+#else
 bool is_lit(vec3 a, vec3 b, vec3 c) {
   bool even = true;
   if (is_before(b, a)) { vec3 t = a; a = b; b = t; even = !even; }
@@ -29,6 +37,7 @@ bool is_lit(vec3 a, vec3 b, vec3 c) {
   precise float height = normal.x * to_light.x + normal.y * to_light.y + normal.z * to_light.z;
   return (height >= 0.0) == even;
 }
+#endif
 
 // The plane through the light's centre and an edge.
 struct EdgePlane {

@@ -6,7 +6,7 @@
 // volumes are closed whatever the mesh.
 //
 // Defined by the preamble: EVERY_EDGE for plain triangles, of which the lit ones throw three sides each
-// (van Sambeek 2007, 3.2.4, brute force).
+// (van Sambeek 2007, 3.2.4, brute force); GAPS_IGNORED for open edges that throw no side.
 #ifndef PENUMBRA_SILHOUETTE_GLSL
 #define PENUMBRA_SILHOUETTE_GLSL
 #include "renderer/shadow_volumes/facing.glsl"
@@ -50,8 +50,11 @@ bool is_silhouette(int k, bool lit, out int p, out int q) {
   // An open edge names one of its own corners as neighbour. A neighbour that continues the surface
   // as the light sees it has the edge from q to p.
   vec3 other = world_position[start + 1];
-  return other == world_position[start] || other == world_position[stop] ||
-         !is_lit(world_position[q], world_position[p], other);
+  bool open = other == world_position[start] || other == world_position[stop];
+#ifdef GAPS_IGNORED
+  if (open) return false;
+#endif
+  return open || !is_lit(world_position[q], world_position[p], other);
 #endif
 }
 #endif

@@ -1,5 +1,7 @@
 #include "renderer/shadow_volumes/stencil_volumes.h"
 
+#include <algorithm>
+
 #include "renderer/shadow_volumes/near_plane.h"
 #include "renderer/shadow_volumes/volume_draws.h"
 
@@ -56,6 +58,21 @@ void note_ignored_masks(PrepareContext& context) {
 
 }  // namespace
 
+Parameter ablation_parameter() {
+  Parameter ablation;
+  ablation.name = "ablation";
+  ablation.type = ParameterType::choice;
+  ablation.choices = {"none", "far-clipped", "uncapped", "gaps-ignored", "first-corner"};
+  ablation.default_value = std::string("none");
+  ablation.meaning =
+      "Leaves one precaution out, to show what it is for. far-clipped: volumes are cut off by a "
+      "far "
+      "plane behind the last visible surface. uncapped: volumes have sides only. gaps-ignored: "
+      "meshes with gaps are taken for closed ones. first-corner: the side of a triangle that looks "
+      "at the light is decided by the direction to its first corner.";
+  return ablation;
+}
+
 Parameter clamp_parameter() {
   Parameter clamp;
   clamp.name = "clamp";
@@ -84,6 +101,12 @@ VolumeOptions volume_options(const ParameterValues& parameters) {
   VolumeOptions options;
   options.clamp = boolean_of(parameters, "clamp");
   options.stencil_passes = static_cast<int>(integer_of(parameters, "stencil_passes"));
+  if (parameters.contains("ablation")) {
+    const std::vector<std::string> choices = ablation_parameter().choices;
+    const auto chosen =
+        std::find(choices.begin(), choices.end(), choice_of(parameters, "ablation"));
+    options.ablation = static_cast<Ablation>(chosen - choices.begin());
+  }
   return options;
 }
 
@@ -105,7 +128,7 @@ struct StencilVolumes::Step {
     commands.bind(*pipeline, bindings);
     commands.cull(cull);
     if (open_caps)
-      draws->record_open_caps(commands);
+      draws->record_open_caps(commands, pipeline->program.push_constants);
     else
       draws->record(commands, scene);
   }
@@ -131,6 +154,10 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
                                const VolumeDraws& draws, std::vector<Step>& steps,
                                const Counter* counter) {
   const auto add = [&](vulkan::ProgramSource source, vulkan::GraphicsState state, bool open_caps) {
+    if (options.ablation == Ablation::gaps_ignored) source.preamble += "#define GAPS_IGNORED\n";
+    if (options.ablation == Ablation::first_corner) source.preamble += "#define FIRST_CORNER\n";
+    if (options.ablation == Ablation::far_clipped)
+      source.stages[VK_SHADER_STAGE_FRAGMENT_BIT] = "renderer/shadow_volumes/far_clip.frag";
     vulkan::Bindings bindings = context.frame_bindings;
     if (open_caps) bind_corners(bindings, context);
     if (counter != nullptr) counter->apply(source, state, bindings);
@@ -145,7 +172,8 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
   vulkan::ProgramSource source =
       volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
   vulkan::GraphicsState state = stencil_state(context, options);
-  if (options.counting == Counting::behind) source.preamble += "#define WITH_CAPS\n";
+  const bool capped = options.counting == Counting::behind && options.ablation != Ablation::uncapped;
+  if (capped) source.preamble += "#define WITH_CAPS\n";
   if (options.exact_sides) {
     vulkan::ProgramSource sides =
         volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
@@ -159,7 +187,7 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
     source.preamble += "#define CAPS_ONLY\n";
   }
   add(source, state, false);
-  if (options.counting == Counting::before || !draws.any_open()) return;
+  if (!capped || !draws.any_open()) return;
   vulkan::ProgramSource caps;
   caps.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_volumes/open_cap.vert"}};
   state.vertex_input = vulkan::VertexInput::none;
@@ -193,6 +221,7 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   VolumeDrawOptions wanted;
   wanted.every_edge = options.every_edge;
   wanted.clamp = options.clamp;
+  wanted.gaps_ignored = options.ablation == Ablation::gaps_ignored;
   wanted.light_radius = options.light_radius;
   VolumeDraws draws, outside, shading_camera;
   std::vector<Step> steps;

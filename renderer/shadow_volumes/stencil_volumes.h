@@ -13,6 +13,16 @@ enum class Counting {
   before,  ///< z-pass: those between camera and surface. Wrong when the camera is in a volume
 };
 
+/// A precaution that is left out, to show what it is for.
+enum class Ablation {
+  none,
+  far_clipped,   ///< volumes end at a far plane behind the last visible surface
+  uncapped,      ///< volumes have sides only
+  gaps_ignored,  ///< all meshes are taken for closed ones
+  first_corner,  ///< triangles are turned to the light if their first corner is
+};
+Parameter ablation_parameter();
+
 Parameter clamp_parameter();
 
 /// Parameters of every technique that counts volumes: clamp, stencil_passes.
@@ -44,6 +54,8 @@ struct VolumeOptions {
   /// Decide by the sides' own planes, not by the rasteriser's depths, whether they are crossed
   /// behind the surface, as penumbra wedges decide it. Only for Counting::behind.
   bool exact_sides = false;
+  /// Only for Counting::behind.
+  Ablation ablation = Ablation::none;
   /// Of the light, where not only its centre throws the shadows that clamping must keep: m, or the
   /// tangent of the angle when directional.
   double light_radius = 0.0;

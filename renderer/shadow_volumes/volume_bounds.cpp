@@ -59,6 +59,16 @@ bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const
   return range <= 0.0 || glm::length(center - light_.position) - radius <= range;
 }
 
+float VolumeBounds::far_depth(const glm::dmat4& clip_from_world) const {
+  double depth = 1.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec4 clip =
+        clip_from_world * glm::dvec4(corner_of(receivers_.low, receivers_.high, corner), 1.0);
+    if (clip.w > 0.0) depth = std::min(depth, clip.z / clip.w);
+  }
+  return static_cast<float>(0.999 * depth);
+}
+
 std::optional<glm::vec4> VolumeBounds::end_plane(const glm::vec3& low,
                                                  const glm::vec3& high) const {
   const bool directional = light_.kind == LightKind::directional;

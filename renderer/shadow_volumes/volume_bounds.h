@@ -22,6 +22,9 @@ class VolumeBounds {
   /// Empty where the box reaches behind the light.
   std::optional<glm::vec4> end_plane(const glm::vec3& low, const glm::vec3& high) const;
 
+  /// Reversed depth just behind everything visible: where a far plane would stand.
+  float far_depth(const glm::dmat4& clip_from_world) const;
+
  private:
   const WorldLight& light_;
   double light_radius_;

@@ -39,11 +39,13 @@ void VolumeDraws::record(vulkan::Commands& commands, const GpuScene& scene) cons
   }
 }
 
-void VolumeDraws::record_open_caps(vulkan::Commands& commands) const {
-  // Six indices with adjacency stand for the three corners of a triangle.
-  for (const Draw& draw : draws)
-    if (draw.constants.every_triangle != 0u)
-      vkCmdDraw(commands.handle(), draw.index_count / 2, 1, draw.first_index / 2, 0);
+void VolumeDraws::record_open_caps(vulkan::Commands& commands, bool constants) const {
+  for (const Draw& draw : draws) {
+    if (draw.constants.every_triangle == 0u) continue;
+    if (constants) commands.constants(draw.constants);
+    // Six indices with adjacency stand for the three corners of a triangle.
+    vkCmdDraw(commands.handle(), draw.index_count / 2, 1, draw.first_index / 2, 0);
+  }
 }
 
 bool VolumeDraws::any_open() const {
@@ -60,13 +62,15 @@ void bind_corners(vulkan::Bindings& bindings, const PrepareContext& context) {
 VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOptions& options) {
   const VolumeBounds bounds(context, options.light_radius);
   const float reach = 1e4f * glm::length(context.scene.high() - context.scene.low());
+  const float far_depth = bounds.far_depth(context.camera.clip_from_world);
   VolumeDraws list;
   list.indices = options.every_edge ? &context.scene.index_buffer() : &context.adjacency->indices;
   const auto add = [&](const auto& part, bool every_triangle) {
     if (!part.casts_shadow) return;
     if (options.accept && !options.accept(part.low, part.high)) return;
-    VolumeDraws::Draw draw{
-        part.first_index, part.index_count, {glm::vec4(0.0f), reach, every_triangle ? 1u : 0u}};
+    VolumeDraws::Draw draw{part.first_index,
+                           part.index_count,
+                           {glm::vec4(0.0f), reach, every_triangle ? 1u : 0u, far_depth}};
     if (options.clamp) {
       if (!bounds.may_shadow(part.low, part.high)) return;
       draw.constants.end_plane = bounds.end_plane(part.low, part.high).value_or(glm::vec4(0.0f));
@@ -85,7 +89,8 @@ VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOpt
   if (options.every_edge)
     for (const DrawRange& range : context.scene.ranges()) add(range, false);
   else
-    for (const AdjacencyGroup& group : context.adjacency->host.groups) add(group, !group.closed);
+    for (const AdjacencyGroup& group : context.adjacency->host.groups)
+      add(group, !group.closed && !options.gaps_ignored);
   return list;
 }
 

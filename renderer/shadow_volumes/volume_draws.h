@@ -9,6 +9,7 @@ struct VolumeConstants {
   glm::vec4 end_plane{0.0f};
   float reach = 0.0f;
   std::uint32_t every_triangle = 0;
+  float far_depth = 0.0f;
 };
 
 /// The casters whose volumes are to be drawn, in as few draws as may be.
@@ -23,8 +24,9 @@ struct VolumeDraws {
 
   /// Binds vertices and indices and draws all; a pipeline must be bound.
   void record(vulkan::Commands& commands, const GpuScene& scene) const;
-  /// Draws the triangles of open meshes as open_cap.vert wants them.
-  void record_open_caps(vulkan::Commands& commands) const;
+  /// Draws the triangles of open meshes as open_cap.vert wants them, with `constants` where the
+  /// bound pipeline reads any.
+  void record_open_caps(vulkan::Commands& commands, bool constants) const;
   bool any_open() const;
 };
 
@@ -34,6 +36,8 @@ struct VolumeDrawOptions {
   /// Leave out casters that cannot shadow anything visible, and end volumes behind everything that
   /// is.
   bool clamp = false;
+  /// Take all meshes for closed ones.
+  bool gaps_ignored = false;
   /// Radius of the sphere around the light from which shadows are thrown, m (tangent of the angle
   /// when directional).
   double light_radius = 0.0;

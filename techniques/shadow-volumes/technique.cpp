@@ -44,6 +44,7 @@ TechniqueDescription describe_shadow_volumes() {
   description.source = "van Sambeek 2007, 2.4.3 and 3.2.4; Everitt and Kilgard 2002";
   description.parameters = shadow_volumes::volume_parameters();
   description.parameters.push_back(counting);
+  description.parameters.push_back(shadow_volumes::ablation_parameter());
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
   description.create = [] { return std::make_unique<ShadowVolumes>(); };

@@ -134,7 +134,7 @@ std::vector<int> exact_visibility(const Scene& scene, const std::string& camera_
         const glm::dvec3 point = view.from + hit->distance * view.along;
         const glm::dvec3 to_light =
             light.kind == LightKind::directional ? -1e4 * light.direction : light.position - point;
-        if (glm::dot(hit->normal, to_light) <= 0.0)
+        if (glm::dot(hit->normal, glm::normalize(to_light)) < 1e-6)
           visibility.push_back(-1);
         else
           visibility.push_back(rays.hidden(point, to_light, hit->triangle) ? 0 : 1);

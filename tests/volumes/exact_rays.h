@@ -47,7 +47,7 @@ class ExactRays {
 };
 
 /// For every pixel of a square picture and every light: 1 lit, 0 shadowed, -1 where no facet faces
-/// the light.
+/// the light by more than 1e-6 (sine): where the light lies in a facet's plane, either is right.
 std::vector<int> exact_visibility(const Scene& scene, const std::string& camera,
                                   std::uint32_t width);
 
