@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "scenes/built_in/built_in.h"
 #include "scenes/generators/random.h"
@@ -146,6 +148,28 @@ Scene make_aircraft() {
   b.scene.background_low = {0.62f, 0.70f, 0.78f};
   b.scene.background_high = {0.22f, 0.38f, 0.62f};
   return std::move(b.scene);
+}
+
+Scene make_fleet(int count) {
+  Scene scene = make_aircraft();
+  scene.id = "fleet:" + std::to_string(count);
+  scene.title = std::to_string(count) + " jets on an apron";
+  const Instance jet = scene.instances.back();
+  scene.instances.pop_back();
+  const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
+  const double spacing = 26.0 / columns;
+  const double scale = std::min(1.0, spacing / 11.0);
+  const glm::dmat4 smaller = glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 place((i % columns - 0.5 * (columns - 1)) * spacing, 0.0,
+                           (i / columns - 0.5 * (columns - 1)) * spacing);
+    Instance instance = jet;
+    instance.name = "jet " + std::to_string(i);
+    instance.world_from_object = move(place) * turn_y(137.5 * i) * smaller * jet.world_from_object;
+    scene.instances.push_back(instance);
+  }
+  scene.cameras.front().position = {-16.0, 20.0, 26.0};
+  return scene;
 }
 
 }  // namespace penumbra::scenes

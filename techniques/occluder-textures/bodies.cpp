@@ -89,17 +89,17 @@ double thinness(const OrientedBox& box) {
 
 }  // namespace
 
-std::vector<Body> find_bodies(const GpuScene& scene) {
-  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 3>>> instances;
+std::vector<Body> find_bodies(const GpuScene& scene, const std::set<std::uint32_t>& instances) {
+  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 3>>> casters;
   for (const DrawRange& range : scene.ranges()) {
-    if (!range.casts_shadow) continue;
+    if (!range.casts_shadow || !instances.contains(range.instance)) continue;
     for (std::uint32_t i = 0; i < range.index_count; i += 3) {
       const std::uint32_t* corner = &scene.indices()[range.first_index + i];
-      instances[range.instance].push_back({corner[0], corner[1], corner[2]});
+      casters[range.instance].push_back({corner[0], corner[1], corner[2]});
     }
   }
   std::vector<Body> bodies;
-  for (const auto& [instance, triangles] : instances) {
+  for (const auto& [instance, triangles] : casters) {
     std::map<glm::vec3, std::size_t, Before> first_at;  // the first triangle with this corner
     Sets sets(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t)

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <set>
 #include <vector>
 
 #include "renderer/scene/gpu_scene.h"
@@ -17,8 +18,8 @@ struct Body {
   std::vector<Triangle> triangles;
 };
 
-/// Bodies of all casters, instance by instance.
-std::vector<Body> find_bodies(const GpuScene& scene);
+/// Bodies of the casters among these instances, instance by instance.
+std::vector<Body> find_bodies(const GpuScene& scene, const std::set<std::uint32_t>& instances);
 
 /// Where a body lies along three axes.
 struct OrientedBox {

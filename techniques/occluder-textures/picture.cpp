@@ -16,6 +16,13 @@ std::pair<int, int> centers_between(double from, double to, int size) {
 
 }  // namespace
 
+Bounds Rectangle::bounds() const {
+  Bounds box;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-0.5, 0.5}) box.add(center + x * size.x * right + y * size.y * up);
+  return box;
+}
+
 double Picture::filled() const {
   const auto count =
       std::count_if(texels_.begin(), texels_.end(), [](std::uint8_t texel) { return texel > 0; });

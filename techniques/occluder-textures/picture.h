@@ -12,6 +12,7 @@ struct Rectangle {
   glm::dvec2 size{1.0};             ///< m along right and up
 
   glm::dvec3 normal() const { return glm::cross(right, up); }
+  Bounds bounds() const;
 };
 
 /// Occlusion by texel: 0 lets light through, 255 stops it. Row 0 is the lowest along up.

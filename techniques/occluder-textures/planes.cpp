@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+#include <set>
 
 namespace penumbra::techniques::occluder_textures {
 namespace {
@@ -22,7 +25,7 @@ struct Candidate {
   Rectangle rectangle;  ///< its size is set when all bodies are known
   double thickness = 0.0;
   double area = 0.0;
-  std::uint32_t instance = 0;
+  std::size_t model = 0;
   std::vector<const Body*> bodies;
   bool section = false;  ///< the texture is the body's section, not its silhouette
 };
@@ -54,7 +57,6 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
     candidate.rectangle = across(box, axis, offset);
     candidate.thickness = 2.0 * box.half[axis];
     candidate.area = candidate.rectangle.size.x * candidate.rectangle.size.y;
-    candidate.instance = body.instance;
     candidate.bodies = {&body};
     candidate.section = section;
     if (candidate.area > 0.0) list.push_back(candidate);
@@ -78,7 +80,7 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
 
 /// Whether b's bodies may as well be cut by a's plane.
 bool coincide(const Candidate& a, const Candidate& b) {
-  if (a.instance != b.instance || a.section || b.section) return false;
+  if (a.section || b.section) return false;
   const glm::dvec3 normal = a.rectangle.normal();
   if (std::abs(glm::dot(normal, b.rectangle.normal())) < 0.9998) return false;
   const double offset = std::abs(glm::dot(normal, b.rectangle.center - a.rectangle.center));
@@ -122,49 +124,150 @@ void fit(Rectangle& rectangle, const std::vector<const Body*>& bodies, std::uint
   rectangle.size = (high - low) * (resolution / (resolution - 4.0));
 }
 
-void draw_silhouettes(OccluderPlane& plane, const std::vector<const Body*>& casters,
-                      const std::vector<Body>& all, const PlaneOptions& options) {
-  for (const Body* body : casters) plane.picture.add_silhouette(plane.rectangle, *body);
+void draw_silhouettes(Picture& picture, const Rectangle& rectangle,
+                      const std::vector<const Body*>& casters, const std::vector<Body>& all,
+                      const PlaneOptions& options) {
+  for (const Body* body : casters) picture.add_silhouette(rectangle, *body);
   if (options.extend == 0) return;
   Picture inside(options.resolution);
-  for (const Body& body : all) inside.add_section(plane.rectangle, body);
-  plane.picture.extend_within(inside, options.extend);
+  for (const Body& body : all) inside.add_section(rectangle, body);
+  picture.extend_within(inside, options.extend);
 }
 
-}  // namespace
+/// Bytes that all textures of a light may take, and layers that a device is sure to have.
+constexpr std::size_t most_texture_bytes = 64u << 20;
+constexpr std::size_t most_textures = 1024;
 
-PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
-  const std::vector<Body> bodies = find_bodies(scene);
+/// Instances whose planes are the first one's, moved.
+struct Model {
+  std::vector<glm::dmat4> placed;  ///< from the first instance to each, in the renderer's space
+  std::vector<Body> bodies;        ///< of the first instance
+};
+
+/// Whether a matrix keeps right angles and the ratio of lengths.
+bool is_similarity(const glm::dmat4& m) {
+  const glm::dmat3 linear(m);
+  const glm::dmat3 product = glm::transpose(linear) * linear;
+  const double scale = product[0][0];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(product[i][k] - (i == k ? scale : 0.0)) > 1e-6 * scale) return false;
+  return scale > 0.0;
+}
+
+std::vector<Model> find_models(const GpuScene& scene) {
+  std::set<std::uint32_t> casters;
+  for (const DrawRange& range : scene.ranges())
+    if (range.casts_shadow) casters.insert(range.instance);
+  const auto& instances = scene.scene().instances;
+  const glm::dmat4 shift = glm::translate(glm::dmat4(1.0), -scene.origin());
+  std::vector<Model> models;
+  std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::size_t>>> known;  // by mesh
+  for (const std::uint32_t instance : casters) {
+    auto& firsts = known[instances[instance].mesh];
+    const glm::dmat4 own = shift * instances[instance].world_from_object;
+    bool found = false;
+    for (const auto& [first, model] : firsts) {
+      const glm::dmat4 placed = own * glm::inverse(shift * instances[first].world_from_object);
+      if (!is_similarity(placed)) continue;
+      models[model].placed.push_back(placed);
+      found = true;
+      break;
+    }
+    if (found) continue;
+    firsts.emplace_back(instance, models.size());
+    models.push_back({{glm::dmat4(1.0)}, find_bodies(scene, {instance})});
+  }
+  return models;
+}
+
+std::vector<Candidate> candidates_of(const GpuScene& scene, const Model& model) {
   std::vector<Candidate> list;
-  for (const Body& body : bodies) {
+  for (const Body& body : model.bodies) {
     glm::dmat3 axes(scene.scene().instances[body.instance].world_from_object);
     for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
     axes[1] = glm::normalize(axes[1] - axes[0] * glm::dot(axes[0], axes[1]));
     axes[2] = glm::cross(axes[0], axes[1]);
     add_candidates(body, box_around(body, axes), list);
   }
-  list = merged(std::move(list));
+  return merged(std::move(list));
+}
+
+void keep_largest(std::vector<Candidate>& list, std::size_t most) {
   std::stable_sort(list.begin(), list.end(),
                    [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
-  if (list.size() > options.most_planes) list.resize(options.most_planes);
+  if (list.size() > most) list.resize(most);
+}
+
+Rectangle moved(const Rectangle& rectangle, const glm::dmat4& placed) {
+  const glm::dmat3 linear(placed);
+  const double scale = glm::length(linear[0]);
+  return {glm::dvec3(placed * glm::dvec4(rectangle.center, 1.0)), linear * rectangle.right / scale,
+          linear * rectangle.up / scale, scale * rectangle.size};
+}
+
+std::size_t count_represented(const std::vector<const Candidate*>& candidates) {
+  std::set<const Body*> bodies;
+  for (const Candidate* candidate : candidates)
+    bodies.insert(candidate->bodies.begin(), candidate->bodies.end());
+  return bodies.size();
+}
+
+}  // namespace
+
+Bounds PlaneGroup::box() const {
+  Bounds bounds;
+  for (const OccluderPlane& plane : planes) bounds.add(plane.rectangle.bounds());
+  return bounds;
+}
+
+std::size_t PlaneSet::planes() const {
+  std::size_t count = 0;
+  for (const PlaneGroup& group : groups) count += group.planes.size();
+  return count;
+}
+
+PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
+  const std::vector<Model> models = find_models(scene);
+  std::vector<Candidate> list;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    std::vector<Candidate> own = candidates_of(scene, models[i]);
+    keep_largest(own, options.most_planes);
+    for (Candidate& candidate : own) {
+      candidate.model = i;
+      list.push_back(std::move(candidate));
+    }
+  }
+  const std::size_t layer_bytes = std::size_t{options.resolution} * options.resolution;
+  keep_largest(list, std::min(most_textures, most_texture_bytes / layer_bytes));
   PlaneSet set;
-  set.bodies = bodies.size();
-  std::vector<const Body*> represented;
-  for (Candidate& candidate : list) {
-    OccluderPlane plane;
-    plane.rectangle = candidate.rectangle;
-    plane.picture = Picture(options.resolution);
+  std::vector<std::vector<OccluderPlane>> planes(models.size());
+  std::vector<std::vector<const Candidate*>> kept(models.size());
+  for (const Candidate& candidate : list) {
+    const Model& model = models[candidate.model];
+    OccluderPlane plane{candidate.rectangle, set.textures.size(), {}};
+    Picture picture(options.resolution);
     fit(plane.rectangle, candidate.bodies, options.resolution);
     if (candidate.section)
-      plane.picture.add_section(plane.rectangle, *candidate.bodies.front());
+      picture.add_section(plane.rectangle, *candidate.bodies.front());
     else
-      draw_silhouettes(plane, candidate.bodies, bodies, options);
-    represented.insert(represented.end(), candidate.bodies.begin(), candidate.bodies.end());
-    set.planes.push_back(std::move(plane));
+      draw_silhouettes(picture, plane.rectangle, candidate.bodies, model.bodies, options);
+    set.textures.push_back(std::move(picture));
+    planes[candidate.model].push_back(plane);
+    kept[candidate.model].push_back(&candidate);
   }
-  std::sort(represented.begin(), represented.end());
-  represented.erase(std::unique(represented.begin(), represented.end()), represented.end());
-  set.represented = represented.size();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    set.bodies += models[i].bodies.size() * models[i].placed.size();
+    set.represented += count_represented(kept[i]) * models[i].placed.size();
+    for (const glm::dmat4& placed : models[i].placed) {
+      PlaneGroup group;
+      for (OccluderPlane plane : planes[i]) {
+        plane.rectangle = moved(plane.rectangle, placed);
+        group.planes.push_back(plane);
+      }
+      if (!group.planes.empty()) set.groups.push_back(std::move(group));
+    }
+  }
   return set;
 }
 
@@ -192,7 +295,9 @@ bool is_named(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options) {
-  const std::vector<Body> bodies = find_bodies(scene);
+  std::set<std::uint32_t> everything;
+  for (const DrawRange& range : scene.ranges()) everything.insert(range.instance);
+  const std::vector<Body> bodies = find_bodies(scene, everything);
   PlaneSet set;
   set.bodies = bodies.size();
   std::vector<bool> represented(bodies.size(), false);
@@ -200,7 +305,8 @@ PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options) {
     OccluderPlane plane;
     plane.rectangle = {authored.center - scene.origin(), authored.right, authored.up,
                        authored.size};
-    plane.picture = Picture(options.resolution);
+    plane.texture = set.textures.size();
+    Picture picture(options.resolution);
     if (!authored.receivers.empty()) {
       plane.receivers.add(authored.receivers.low - scene.origin());
       plane.receivers.add(authored.receivers.high - scene.origin());
@@ -215,10 +321,11 @@ PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options) {
         represented[i] = true;
       }
     if (!authored.texture.empty() && texture != textures.end())
-      draw_texture(plane.picture, *texture);
+      draw_texture(picture, *texture);
     else
-      draw_silhouettes(plane, casters, bodies, options);
-    set.planes.push_back(std::move(plane));
+      draw_silhouettes(picture, plane.rectangle, casters, bodies, options);
+    set.textures.push_back(std::move(picture));
+    set.groups.push_back({{plane}});
   }
   set.represented =
       static_cast<std::size_t>(std::count(represented.begin(), represented.end(), true));

@@ -4,29 +4,40 @@
 
 namespace penumbra::techniques::occluder_textures {
 
-/// A plane with its texture, in the renderer's world space.
+/// A plane in the renderer's world space.
 struct OccluderPlane {
   Rectangle rectangle;
-  Picture picture{1};
-  Bounds receivers;  ///< shadows only surfaces within; everything where empty
+  std::size_t texture = 0;  ///< of PlaneSet::textures
+  Bounds receivers;         ///< shadows only surfaces within; everything where empty
 };
 
 struct PlaneOptions {
   std::uint32_t resolution = 256;  ///< texels along both sides of a texture
-  std::uint32_t most_planes = 16;
-  std::uint32_t extend = 4;  ///< texels that silhouettes are continued into bodies
+  std::uint32_t most_planes = 16;  ///< of one model
+  std::uint32_t extend = 4;        ///< texels that silhouettes are continued into bodies
+};
+
+/// Planes that shadow only what their common box stands before: those of one caster.
+struct PlaneGroup {
+  std::vector<OccluderPlane> planes;
+  Bounds box() const;
 };
 
 struct PlaneSet {
-  std::vector<OccluderPlane> planes;
+  std::vector<Picture> textures;
+  std::vector<PlaneGroup> groups;
   std::size_t bodies = 0;       ///< of all casters
   std::size_t represented = 0;  ///< of these, in at least one plane
+
+  std::size_t planes() const;
 };
 
-/// Planes for the bodies of the scene's casters. A flat body is cut in half along its flat side; a
-/// body with straight sides is cut near each of them; a round one is cut through the middle along
-/// each of its axes. Planes of an instance that all but coincide become one. Those with the largest
-/// silhouettes are kept.
+/// Planes for the bodies of the scene's casters, a group for each instance. Instances of a mesh
+/// that differ by turning, moving and scaling are one model and share its textures. A flat body is
+/// cut in half along its flat side; a body with straight sides is cut near each of them; a round
+/// one is cut through the middle along each of its axes. Planes of a model that all but coincide
+/// become one. Those with the largest silhouettes are kept, `most_planes` for each model, and as
+/// many of all as memory allows.
 PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options);
 
 /// The planes that the scene's author placed.

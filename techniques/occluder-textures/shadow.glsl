@@ -1,43 +1,75 @@
 // Receivers thrown towards the light onto planes that cut the casters in half, and looked up in the
-// silhouettes there (Coleman 2006).
+// silhouettes there (Coleman 2006). Planes of a caster are looked at only where the way to the light
+// meets the box around them.
 struct OccluderPlaneData {
-  vec4 center;  // xyz world
+  vec4 center;  // xyz world, w layer of the texture
   vec4 normal;  // xyz unit
   vec4 right;   // xyz unit over the texture's width: 1 across it
   vec4 up;      // likewise
   vec4 low;     // box of the receivers
   vec4 high;
 };
+struct OccluderGroupData {
+  vec4 low;      // box around the planes
+  vec4 high;
+  uvec4 planes;  // x the first, y how many
+};
 layout(std430) readonly buffer OccluderPlaneBlock {
   uvec4 occluder_plane_count;
   OccluderPlaneData occluder_planes[];
 };
+layout(std430) readonly buffer OccluderGroupBlock {
+  uvec4 occluder_group_count;
+  OccluderGroupData occluder_groups[];
+};
 uniform sampler2DArray occluder_textures;
+
+float light_past(OccluderPlaneData plane, ShadowQuery query) {
+  if (any(lessThan(query.position, plane.low.xyz)) || any(greaterThan(query.position, plane.high.xyz)))
+    return 1.0;
+  float approach = dot(query.to_light, plane.normal.xyz);
+  if (abs(approach) < 1e-6) return 1.0;
+  float along = dot(plane.center.xyz - query.position, plane.normal.xyz) / approach;
+  // Behind the receiver, or beyond the light, a plane is nothing but a false shadow.
+  if (parameter_sign_test != 0 && (along <= 0.0 || along >= query.light_distance)) return 1.0;
+  vec3 offset = query.position + along * query.to_light - plane.center.xyz;
+  vec2 place = 0.5 + vec2(dot(offset, plane.right.xyz), dot(offset, plane.up.xyz));
+  if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) return 1.0;
+  return 1.0 - textureLod(occluder_textures, vec3(place, plane.center.w), 0.0).r;
+}
+
+// Whether the way to the light meets a box; without the sign test, the whole line.
+bool meets(OccluderGroupData group, ShadowQuery query, vec3 inverse) {
+  vec3 a = (group.low.xyz - query.position) * inverse;
+  vec3 b = (group.high.xyz - query.position) * inverse;
+  vec3 enter = min(a, b);
+  vec3 leave = max(a, b);
+  bool half_line = parameter_sign_test != 0;
+  float first = max(max(enter.x, enter.y), max(enter.z, half_line ? 0.0 : -1e30));
+  float last = min(min(leave.x, leave.y), min(leave.z, half_line ? query.light_distance : 1e30));
+  return first <= last;
+}
 
 float calculate_shadow(ShadowQuery query) {
   float visible = 1.0;
-  for (int i = 0; i < int(occluder_plane_count.x); ++i) {
-    OccluderPlaneData plane = occluder_planes[i];
-    if (any(lessThan(query.position, plane.low.xyz)) || any(greaterThan(query.position, plane.high.xyz)))
-      continue;
-    float approach = dot(query.to_light, plane.normal.xyz);
-    if (abs(approach) < 1e-6) continue;
-    float along = dot(plane.center.xyz - query.position, plane.normal.xyz) / approach;
-    // Behind the receiver, or beyond the light, a plane is nothing but a false shadow.
-    if (parameter_sign_test != 0 && (along <= 0.0 || along >= query.light_distance)) continue;
-    vec3 offset = query.position + along * query.to_light - plane.center.xyz;
-    vec2 place = 0.5 + vec2(dot(offset, plane.right.xyz), dot(offset, plane.up.xyz));
-    if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) continue;
-    visible *= 1.0 - textureLod(occluder_textures, vec3(place, float(i)), 0.0).r;
+  // A direction along a side of a box must not give 0 / 0.
+  vec3 steps = mix(query.to_light, vec3(1e-20), lessThan(abs(query.to_light), vec3(1e-20)));
+  vec3 inverse = 1.0 / steps;
+  for (uint i = 0u; i < occluder_group_count.x; ++i) {
+    OccluderGroupData group = occluder_groups[i];
+    if (!meets(group, query, inverse)) continue;
+    for (uint k = 0u; k < group.planes.y; ++k)
+      visible *= light_past(occluder_planes[group.planes.x + k], query);
   }
   return visible;
 }
 
 // The textures side by side, black where they stop light.
 vec4 draw_diagnostic_textures(ShadowQuery query, vec2 picture) {
-  int side = int(ceil(sqrt(max(float(occluder_plane_count.x), 1.0))));
+  int count = textureSize(occluder_textures, 0).z;
+  int side = int(ceil(sqrt(float(count))));
   vec2 place = vec2(picture.x, 1.0 - picture.y) * float(side);
   int layer = (side - 1 - int(place.y)) * side + int(place.x);
-  if (layer >= int(occluder_plane_count.x)) return vec4(0.5, 0.5, 0.6, 1.0);
+  if (layer >= count) return vec4(0.5, 0.5, 0.6, 1.0);
   return vec4(vec3(1.0 - textureLod(occluder_textures, vec3(fract(place), float(layer)), 0.0).r), 1.0);
 }

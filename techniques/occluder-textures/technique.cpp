@@ -1,3 +1,4 @@
+#include "renderer/error.h"
 #include "renderer/frame/prepare_context.h"
 #include "techniques/occluder-textures/planes.h"
 
@@ -5,6 +6,7 @@ namespace penumbra::techniques {
 namespace {
 
 using occluder_textures::OccluderPlane;
+using occluder_textures::PlaneGroup;
 using occluder_textures::PlaneSet;
 
 /// OccluderPlaneData of shadow.glsl.
@@ -12,11 +14,20 @@ struct PlaneData {
   glm::vec4 center, normal, right, up, low, high;
 };
 
+/// OccluderGroupData, likewise.
+struct GroupData {
+  glm::vec4 low, high;
+  glm::uvec4 planes;
+};
+
+/// A shader walks all groups, and some drivers end its loops in silence after 65,535 rounds.
+constexpr std::size_t most_groups = 20000;
+
 PlaneData data_of(const OccluderPlane& plane) {
   const auto& rectangle = plane.rectangle;
   const glm::vec3 everywhere(std::numeric_limits<float>::max());
   PlaneData data;
-  data.center = glm::vec4(rectangle.center, 1.0);
+  data.center = glm::vec4(rectangle.center, static_cast<float>(plane.texture));
   data.normal = glm::vec4(rectangle.normal(), 0.0);
   data.right = glm::vec4(rectangle.right / rectangle.size.x, 0.0);
   data.up = glm::vec4(rectangle.up / rectangle.size.y, 0.0);
@@ -49,7 +60,7 @@ class OccluderTextures : public Technique {
         boolean_of(parameters, "bilinear") ? vulkan::Sampling::linear : vulkan::Sampling::nearest;
     upload_planes(context, set);
     upload_textures(context, set, options.resolution);
-    context.notes.push_back(std::to_string(set.planes.size()) +
+    context.notes.push_back(std::to_string(set.planes()) +
                             (authored ? " planes of the scene" : " generated planes") +
                             " stand for " + std::to_string(set.represented) + " of " +
                             std::to_string(set.bodies) + " bodies");
@@ -57,27 +68,49 @@ class OccluderTextures : public Technique {
 
   void bind(vulkan::Bindings& bindings) const override {
     bindings.buffer("OccluderPlaneBlock", planes_.whole());
+    bindings.buffer("OccluderGroupBlock", groups_.whole());
     bindings.texture("occluder_textures", textures_, sampling_);
   }
 
  private:
-  void upload_planes(PrepareContext& context, const PlaneSet& set) {
-    const glm::uvec4 count(set.planes.size(), 0, 0, 0);
-    std::vector<std::byte> bytes(sizeof(count) + set.planes.size() * sizeof(PlaneData));
+  /// A block of a count and an array.
+  template <class T>
+  static vulkan::Buffer upload_list(PrepareContext& context, const char* name,
+                                    const std::vector<T>& list) {
+    const glm::uvec4 count(list.size(), 0, 0, 0);
+    std::vector<std::byte> bytes(sizeof(count) + list.size() * sizeof(T));
     std::memcpy(bytes.data(), &count, sizeof(count));
-    for (std::size_t i = 0; i < set.planes.size(); ++i) {
-      const PlaneData data = data_of(set.planes[i]);
-      std::memcpy(bytes.data() + sizeof(count) + i * sizeof(data), &data, sizeof(data));
+    if (!list.empty())
+      std::memcpy(bytes.data() + sizeof(count), list.data(), list.size() * sizeof(T));
+    return upload(context.device, context.memory, name, bytes.data(), bytes.size(),
+                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  }
+
+  void upload_planes(PrepareContext& context, const PlaneSet& set) {
+    if (set.groups.size() > most_groups)
+      throw unsupported("occluder textures serve at most " + std::to_string(most_groups) +
+                            " casters; the scene has " + std::to_string(set.groups.size()),
+                        "scene");
+    std::vector<PlaneData> planes;
+    std::vector<GroupData> groups;
+    for (const PlaneGroup& group : set.groups) {
+      const Bounds box = group.box();
+      // Boxes of single planes are flat, and rounding must not lose them.
+      const glm::vec3 margin(1e-5 * (glm::length(box.size()) + glm::length(box.center())));
+      groups.push_back({glm::vec4(glm::vec3(box.low) - margin, 0.0f),
+                        glm::vec4(glm::vec3(box.high) + margin, 0.0f),
+                        {planes.size(), group.planes.size(), 0, 0}});
+      for (const OccluderPlane& plane : group.planes) planes.push_back(data_of(plane));
     }
-    planes_ = upload(context.device, context.memory, "occluder planes", bytes.data(), bytes.size(),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    planes_ = upload_list(context, "occluder planes", planes);
+    groups_ = upload_list(context, "occluder groups", groups);
   }
 
   void upload_textures(PrepareContext& context, const PlaneSet& set, std::uint32_t resolution) {
     vulkan::ImageDescription description;
     description.format = VK_FORMAT_R8_UNORM;
     description.width = description.height = resolution;
-    description.layers = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(set.planes.size()));
+    description.layers = std::max(1u, static_cast<std::uint32_t>(set.textures.size()));
     description.array_view = true;
     description.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     textures_ = vulkan::Image(context.device, context.memory, "occluder textures", description);
@@ -88,8 +121,8 @@ class OccluderTextures : public Technique {
                                  vulkan::MemoryKind::upload);
     auto* bytes = static_cast<std::uint8_t*>(staging.mapped());
     std::memset(bytes, 0, layer_bytes * description.layers);
-    for (std::size_t i = 0; i < set.planes.size(); ++i)
-      std::memcpy(bytes + i * layer_bytes, set.planes[i].picture.texels().data(), layer_bytes);
+    for (std::size_t i = 0; i < set.textures.size(); ++i)
+      std::memcpy(bytes + i * layer_bytes, set.textures[i].texels().data(), layer_bytes);
     vulkan::run_now(context.device, [&](VkCommandBuffer commands) {
       VkBufferImageCopy copy{};
       copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, description.layers};
@@ -100,7 +133,7 @@ class OccluderTextures : public Technique {
   }
 
   vulkan::Image textures_;
-  vulkan::Buffer planes_;
+  vulkan::Buffer planes_, groups_;
   vulkan::Sampling sampling_ = vulkan::Sampling::linear;
 };
 
@@ -152,8 +185,8 @@ TechniqueDescription describe_occluder_textures() {
       source,
       resolution,
       integer_parameter("planes", 16, 1, 64, "",
-                        "Most planes that are generated; those with the largest silhouettes are "
-                        "kept."),
+                        "Most planes that are generated for a model; those with the largest "
+                        "silhouettes are kept."),
       integer_parameter("extend", 4, 0, 32, "texels",
                         "How far silhouettes are continued into other bodies that the plane cuts, "
                         "so that shadows reach what they start at."),
