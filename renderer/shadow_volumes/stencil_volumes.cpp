@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/shadow_volumes/hidden_casters.h"
 #include "renderer/shadow_volumes/near_plane.h"
 #include "renderer/shadow_volumes/volume_draws.h"
 
@@ -79,8 +80,8 @@ Parameter clamp_parameter() {
   clamp.type = ParameterType::boolean;
   clamp.default_value = false;
   clamp.meaning =
-      "Culls casters that cannot shadow anything visible and ends volumes behind the last visible "
-      "surface instead of at infinity.";
+      "Culls casters that cannot shadow anything visible or lie in the shadow of another, and ends "
+      "volumes behind the last visible surface instead of at infinity.";
   return clamp;
 }
 
@@ -172,7 +173,8 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
   vulkan::ProgramSource source =
       volume_program("renderer/shadow_volumes/volume.geom", options.every_edge);
   vulkan::GraphicsState state = stencil_state(context, options);
-  const bool capped = options.counting == Counting::behind && options.ablation != Ablation::uncapped;
+  const bool capped =
+      options.counting == Counting::behind && options.ablation != Ablation::uncapped;
   if (capped) source.preamble += "#define WITH_CAPS\n";
   if (options.exact_sides) {
     vulkan::ProgramSource sides =
@@ -211,6 +213,22 @@ void StencilVolumes::add_near_caps(PrepareContext& context, const VolumeOptions&
       {&context.pipelines.graphics(source, state), bindings, &draws, VK_CULL_MODE_NONE, false});
 }
 
+VolumeDrawOptions StencilVolumes::draws_wanted(const PrepareContext& context,
+                                               const VolumeOptions& options) {
+  VolumeDrawOptions wanted;
+  wanted.every_edge = options.every_edge;
+  wanted.clamp = options.clamp;
+  wanted.gaps_ignored = options.ablation == Ablation::gaps_ignored;
+  wanted.light_radius = options.light_radius;
+  // Whole shadows only: of one point, of both sides of every sheet, with every silhouette.
+  if (options.clamp && options.light_radius == 0.0 && !options.every_edge &&
+      options.ablation == Ablation::none) {
+    if (!hidden_) hidden_ = find_hidden_casters(context.scene, context.light);
+    wanted.hidden = *hidden_;
+  }
+  return wanted;
+}
+
 void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
   stencil_ = &context.geometry.depth;
   note_ignored_masks(context);
@@ -218,11 +236,7 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   const auto in_shadow = [&](const glm::vec3& low, const glm::vec3& high) {
     return near_plane.may_be_in_shadow_of(low, high);
   };
-  VolumeDrawOptions wanted;
-  wanted.every_edge = options.every_edge;
-  wanted.clamp = options.clamp;
-  wanted.gaps_ignored = options.ablation == Ablation::gaps_ignored;
-  wanted.light_radius = options.light_radius;
+  VolumeDrawOptions wanted = draws_wanted(context, options);
   VolumeDraws draws, outside, shading_camera;
   std::vector<Step> steps;
   if (options.automatic) {
@@ -238,7 +252,8 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   draws = list_volume_draws(context, wanted);
   add_steps(context, options, draws, steps, nullptr);
   if (options.near_caps) {
-    // Caps need not be clamped or culled but for the pyramid between light and near plane.
+    // Caps need not be clamped, nor culled by what is visible, but for the pyramid between light
+    // and near plane.
     wanted.clamp = false;
     wanted.accept = in_shadow;
     shading_camera = list_volume_draws(context, wanted);
@@ -256,10 +271,7 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
 
 void StencilVolumes::count_fragments(PrepareContext& context, const VolumeOptions& options,
                                      vulkan::BufferRange counts, std::uint32_t counter) {
-  VolumeDrawOptions wanted;
-  wanted.every_edge = options.every_edge;
-  wanted.clamp = options.clamp;
-  const VolumeDraws draws = list_volume_draws(context, wanted);
+  const VolumeDraws draws = list_volume_draws(context, draws_wanted(context, options));
   const Counter into{counts, counter};
   std::vector<Step> steps;
   add_steps(context, options, draws, steps, &into);

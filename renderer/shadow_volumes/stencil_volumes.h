@@ -1,11 +1,15 @@
 #pragma once
 
+#include <optional>
+#include <set>
+
 #include "renderer/frame/prepare_context.h"
 
 namespace penumbra::shadow_volumes {
 
 class NearPlane;
 struct VolumeDraws;
+struct VolumeDrawOptions;
 
 /// Which crossings of a volume's surface along the view ray are counted.
 enum class Counting {
@@ -38,8 +42,8 @@ struct VolumeOptions {
   Counting counting = Counting::behind;
   /// Three sides for every lit triangle instead of silhouettes: needs no adjacency.
   bool every_edge = false;
-  /// Leave out casters that provably cannot shadow anything visible, and end volumes behind
-  /// everything that is.
+  /// Leave out casters that provably cannot shadow anything visible or lie in another one's shadow,
+  /// and end volumes behind everything that is visible.
   bool clamp = false;
   /// With Counting::before: count the volumes that the near plane lies in first, so that the count
   /// is right wherever the camera stands (z-pass+).
@@ -83,6 +87,8 @@ class StencilVolumes {
  private:
   struct Step;
   struct Counter;
+  /// Which volumes options ask for.
+  VolumeDrawOptions draws_wanted(const PrepareContext& context, const VolumeOptions& options);
   /// Counts volumes, or with a counter the fragments that would.
   void add_steps(PrepareContext& context, const VolumeOptions& options, const VolumeDraws& draws,
                  std::vector<Step>& steps, const Counter* counter);
@@ -91,6 +97,7 @@ class StencilVolumes {
                      std::vector<Step>& steps);
 
   const vulkan::Image* stencil_ = nullptr;
+  std::optional<std::set<std::uint32_t>> hidden_;  ///< casters in the shadow of others, once sought
 };
 
 }  // namespace penumbra::shadow_volumes

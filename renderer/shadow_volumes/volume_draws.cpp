@@ -66,7 +66,7 @@ VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOpt
   VolumeDraws list;
   list.indices = options.every_edge ? &context.scene.index_buffer() : &context.adjacency->indices;
   const auto add = [&](const auto& part, bool every_triangle) {
-    if (!part.casts_shadow) return;
+    if (!part.casts_shadow || options.hidden.contains(part.instance)) return;
     if (options.accept && !options.accept(part.low, part.high)) return;
     VolumeDraws::Draw draw{part.first_index,
                            part.index_count,

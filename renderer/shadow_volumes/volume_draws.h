@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+
 #include "renderer/frame/prepare_context.h"
 
 namespace penumbra::shadow_volumes {
@@ -36,6 +38,8 @@ struct VolumeDrawOptions {
   /// Leave out casters that cannot shadow anything visible, and end volumes behind everything that
   /// is.
   bool clamp = false;
+  /// Instances that are left out.
+  std::set<std::uint32_t> hidden;
   /// Take all meshes for closed ones.
   bool gaps_ignored = false;
   /// Radius of the sphere around the light from which shadows are thrown, m (tangent of the angle
