@@ -1,9 +1,10 @@
-// Projected planar shadows against volumes, which know no planes.
+// Projected planar shadows against volumes and rays, which know no planes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "renderer/error.h"
 #include "tests/volumes/drawing.h"
+#include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
 namespace {
@@ -111,6 +112,70 @@ TEST(Projected, serves_several_planes_that_lie_anyhow) {
     different += result.judged.pixels[i] == 1.0f && upright.judged.pixels[i] == 1.0f &&
                  result.visibility.pixels[i] != upright.visibility.pixels[i];
   EXPECT_LE(different, 5) << "by rounding at the border";
+}
+
+/// A box before a floor, a wall and a ramp, all receivers, under a lamp, a point light and a sun.
+Scene three_planes() {
+  scenes::SceneBuilder b("three-planes", "A box before floor, wall and ramp");
+  const scenes::Look look = b.look("grey", glm::vec3(0.7f));
+  b.ground({-2.0, -2.0}, {2.0, 2.0}, look);
+  b.place(scenes::box({-2.0, 0.0, -2.1}, {2.0, 2.5, -2.0}), look, "wall");
+  b.scene.receivers.push_back(
+      {"wall", {{-2.0, 0.0, -2.0}, {2.0, 0.0, -2.0}, {2.0, 2.5, -2.0}, {-2.0, 2.5, -2.0}}});
+  const glm::dmat4 tilted = glm::translate(glm::dmat4(1.0), glm::dvec3(-1.3, 0.3, -0.2)) *
+                            glm::rotate(glm::dmat4(1.0), -0.5, glm::dvec3(0.2, 0.1, 1.0));
+  b.place(scenes::box({-0.5, -0.05, -0.8}, {0.5, 0.0, 0.8}), look, "ramp", tilted);
+  PlanarReceiver ramp{"ramp", {}};
+  for (const glm::dvec2 at : {glm::dvec2(-0.5, -0.8), {-0.5, 0.8}, {0.5, 0.8}, {0.5, -0.8}})
+    ramp.corners.emplace_back(tilted * glm::dvec4(at.x, 0.0, at.y, 1.0));
+  b.scene.receivers.push_back(ramp);
+  b.place(scenes::box({-0.4, 0.8, -0.9}, {0.2, 1.3, -0.4}), look, "box",
+          glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0.3, 1.0, 0.1)));
+  b.place(scenes::box({-1.5, 0.8, -0.3}, {-1.1, 0.9, 0.1}), look, "plate");
+  b.spot("lamp", {0.2, 3.4, 1.6}, {-0.3, 0.6, -0.8}, glm::vec3(1.0f), 0.5f, 50.0, LightExtent{});
+  b.spot("bulb", {0.6, 2.2, 0.9}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 0.5f, 50.0, LightExtent{})
+      .kind = LightKind::point;
+  b.spot("sun", {0.3, 1.2, 2.0}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 0.5f, 50.0, LightExtent{}).kind =
+      LightKind::directional;
+  b.camera("main", {1.6, 2.2, 3.4}, {-0.4, 0.6, -0.6}, 50.0);
+  return b.scene;
+}
+
+TEST(Projected, falls_on_every_plane_from_every_light_as_rays_have_it) {
+  const Scene scene = three_planes();
+  ASSERT_EQ(scene.receivers.size(), 3u);
+  ASSERT_EQ(scene.lights.size(), 3u);
+  const RenderResult result = draw(scene, "projected");
+  const std::vector<int> truth = test::exact_visibility(scene, {}, size);
+  const test::ExactRays rays(scene);
+  int shadowed[3][3] = {}, wrong[3][3] = {};
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const test::Ray view = test::camera_ray(scene.cameras[0], x, y, size);
+      const auto hit = rays.nearest(view.from, view.along, 0.1);
+      if (!hit) continue;
+      const glm::dvec3 point = view.from + hit->distance * view.along;
+      for (std::size_t r = 0; r < 3; ++r) {
+        const auto& corners = scene.receivers[r].corners;
+        const glm::dvec3 normal =
+            glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+        if (std::abs(glm::dot(normal, point - corners[0])) > 1e-6 ||
+            glm::dot(normal, hit->normal) < 0.999)
+          continue;
+        for (std::uint32_t light = 0; light < 3; ++light) {
+          const int exact = truth[(std::size_t{y} * size + x) * 3 + light];
+          if (result.judged.at(x, y, light) < 1.0f || exact < 0) continue;
+          shadowed[r][light] += exact == 0;
+          wrong[r][light] += result.visibility.at(x, y, light) != static_cast<float>(exact);
+        }
+      }
+    }
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t light = 0; light < 3; ++light) {
+      const auto name = scene.receivers[r].name + " under " + scene.lights[light].name;
+      EXPECT_GT(shadowed[r][light], 20) << name;
+      EXPECT_LE(wrong[r][light], 3) << name << ", of " << shadowed[r][light];
+    }
 }
 
 TEST(Projected, throws_nothing_from_casters_beyond_the_light_or_below_the_plane) {
