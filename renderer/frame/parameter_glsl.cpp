@@ -33,6 +33,9 @@ std::string parameter_declarations(const std::vector<Parameter>& declared,
     for (std::size_t i = 0; i < parameter.choices.size(); ++i)
       constants << "const int " << identifier(parameter.name) << '_'
                 << identifier(parameter.choices[i]) << " = " << i << ";\n";
+    if (parameter.type == ParameterType::integer)
+      constants << "const int " << name
+                << "_maximum = " << static_cast<std::int64_t>(parameter.maximum) << ";\n";
     if (!parameter.variant) {
       members << "  " << (real ? "float " : "int ") << name << ";\n";
     } else if (real) {

@@ -81,6 +81,10 @@ Parameter precision_parameter(const std::string& meaning) {
   return precision;
 }
 
+Diagnostic mip_level_diagnostic() {
+  return {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."};
+}
+
 void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,
                       const BlurSettings& settings) {
   const bool mips =

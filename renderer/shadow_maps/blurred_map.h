@@ -17,6 +17,9 @@ Parameter deviation_parameter();
 /// `precision`: fp16 or fp32, for formats of a map. `meaning` says what fails with fewer bits.
 Parameter precision_parameter(const std::string& meaning);
 
+/// The picture `mip-level` of every program that includes renderer/shadow_maps/blurred_map.glsl.
+Diagnostic mip_level_diagnostic();
+
 enum class MapFilter {
   mean,
   logarithmic,  ///< of logarithms: that of the mean of what they stand for. No mips.

@@ -73,6 +73,10 @@ std::vector<Parameter> map_parameters() {
   return list;
 }
 
+Diagnostic map_diagnostic() {
+  return {"map", "The depth map's first face as the light sees it: near is dark, far is bright."};
+}
+
 namespace {
 
 /// Strategies that ask for the surface behind the first.

@@ -4,7 +4,30 @@
 
 namespace penumbra::shadow_maps {
 
-Parameter table_parameter() {
+std::vector<Parameter> summed_area_parameters() {
+  constexpr std::int64_t largest_kernel = 129;  // texels
+  std::vector<Parameter> list;
+  Parameter kernel;
+  kernel.name = "kernel";
+  kernel.type = ParameterType::integer;
+  kernel.default_value = std::int64_t{5};
+  kernel.minimum = 1;
+  kernel.maximum = largest_kernel;
+  kernel.unit = "texels";
+  kernel.meaning = "Width of the filter; any width costs the same.";
+  kernel.variant = true;
+  list.push_back(kernel);
+
+  Parameter adaptive;
+  adaptive.name = "adaptive";
+  adaptive.type = ParameterType::boolean;
+  adaptive.default_value = true;
+  adaptive.meaning =
+      "Widen the filter, pixel by pixel, to the texels that a pixel covers, at most " +
+      std::to_string(largest_kernel) + ".";
+  adaptive.variant = true;
+  list.push_back(adaptive);
+
   Parameter table;
   table.name = "table";
   table.type = ParameterType::choice;
@@ -16,11 +39,11 @@ Parameter table_parameter() {
       "for its first eight bits. int32: fixed point that may wrap. fp64: doubles, where the device "
       "has them.";
   table.variant = true;
-  return table;
+  list.push_back(table);
+  return list;
 }
 
-void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth,
-                           std::int64_t largest_width) {
+void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth) {
   const std::string& type = choice_of(context.input.parameters, "table");
   if (type == "fp64" && context.device.features.shaderFloat64 == VK_FALSE)
     throw unsupported("this device has no doubles (shaderFloat64), so no table of them", "table");
@@ -30,12 +53,10 @@ void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth,
     table_ = vulkan::Buffer(context.device, context.memory, "summed-area table",
                             entry * map.width * map.height * map.layers,
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  const std::string preamble =
-      context.declarations + "const int largest_width = " + std::to_string(largest_width) + ";\n";
   constexpr std::uint32_t lines = 8;  // of a group, as summed_area.comp has it
   const auto run = [&](const char* name, const std::string& own, const vulkan::Bindings& bindings) {
-    const vulkan::Pipeline& pipeline =
-        context.pipelines.compute("renderer/shadow_maps/summed_area.comp", preamble + own);
+    const vulkan::Pipeline& pipeline = context.pipelines.compute(
+        "renderer/shadow_maps/summed_area.comp", context.declarations + own);
     context.pass(name, [&](vulkan::Commands& commands) {
       commands.bind(pipeline, bindings);
       commands.constants(static_cast<std::int32_t>(map.width));

@@ -1,8 +1,9 @@
-// How sums of moments are kept in a summed-area table. A program that includes this has a variant
-// parameter `table` of the choices below, and the constant largest_width: the widest rectangle, in
-// texels, whose sum must be had.
+// How sums of moments are kept in a summed-area table, by the variant parameter `table`.
 #ifndef PENUMBRA_SUMMED_AREA_TYPES_GLSL
 #define PENUMBRA_SUMMED_AREA_TYPES_GLSL
+
+/// Widest rectangle whose sum must be had, texels.
+const int largest_width = parameter_adaptive == 1 ? parameter_kernel_maximum : parameter_kernel;
 
 #if defined(variant_table_fp32)
 #define TableSum vec2

@@ -1,5 +1,5 @@
 #include "renderer/error.h"
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/prefiltered_map.h"
 
 namespace penumbra::techniques {
 namespace {
@@ -68,32 +68,28 @@ class ExponentialShadowMap : public Technique {
 
   void prepare(PrepareContext& context) override {
     const ParameterValues& parameters = context.input.parameters;
-    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
     shadow_maps::BlurSettings settings;
     settings.encoder = "techniques/esm/exponential.frag";
-    settings.format =
-        choice_of(parameters, "precision") == "fp16" ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
+    settings.format = shadow_maps::float_format(parameters, 1);
     if (choice_of(parameters, "filtering") == "logarithmic")
       settings.filter = shadow_maps::MapFilter::logarithmic;
-    exponentials_.draw(context, depth_, settings);
+    exponentials_.draw(context, settings);
     z_max_ = choice_of(parameters, "fallback") == "z-max";
     if (!z_max_) return;
     settings.encoder = "techniques/esm/farthest.frag";
     settings.format = VK_FORMAT_R32_SFLOAT;
     settings.filter = shadow_maps::MapFilter::maximum;
     settings.name = "farthest depths";
-    farthest_.draw(context, depth_, settings);
+    farthest_.draw(context, exponentials_.depth(), settings);
   }
 
   void bind(vulkan::Bindings& bindings) const override {
-    depth_.bind(bindings);
     exponentials_.bind(bindings);
     if (z_max_) farthest_.bind(bindings, "farthest_map");
   }
 
  private:
-  shadow_maps::DepthMap depth_;
-  shadow_maps::BlurredMap exponentials_;
+  shadow_maps::PrefilteredMap exponentials_;
   shadow_maps::BlurredMap farthest_;  ///< only with fallback z-max
   bool z_max_ = false;
 };
@@ -110,10 +106,10 @@ TechniqueDescription describe_esm() {
   description.source = "Adorjan 2013, 2.2.2 and 3.3.2; Annen et al. 2008; Salvi 2008";
   description.parameters = esm_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
       {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
-      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+      shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/esm/shadow.glsl";
   description.create = [] { return std::make_unique<ExponentialShadowMap>(); };
   return description;

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/prefiltered_map.h"
 
 namespace penumbra::techniques {
 namespace {
@@ -47,25 +47,15 @@ class ExponentialVarianceShadowMap : public Technique {
 
   void prepare(PrepareContext& context) override {
     const ParameterValues& parameters = context.input.parameters;
-    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
-    const bool half = choice_of(parameters, "precision") == "fp16";
-    shadow_maps::BlurSettings settings;
-    settings.encoder = "techniques/evsm/warped_moments.frag";
-    if (choice_of(parameters, "components") == "4")
-      settings.format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-    else
-      settings.format = half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
-    moments_.draw(context, depth_, settings);
+    const int components = choice_of(parameters, "components") == "4" ? 4 : 2;
+    map_.draw(context, {.encoder = "techniques/evsm/warped_moments.frag",
+                        .format = shadow_maps::float_format(parameters, components)});
   }
 
-  void bind(vulkan::Bindings& bindings) const override {
-    depth_.bind(bindings);
-    moments_.bind(bindings);
-  }
+  void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
-  shadow_maps::DepthMap depth_;
-  shadow_maps::BlurredMap moments_;
+  shadow_maps::PrefilteredMap map_;
 };
 
 }  // namespace
@@ -80,9 +70,9 @@ TechniqueDescription describe_evsm() {
   description.source = "Adorjan 2013, 2.2.3; Lauritzen and McCool 2008";
   description.parameters = evsm_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
-      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+      shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/evsm/shadow.glsl";
   description.create = [] { return std::make_unique<ExponentialVarianceShadowMap>(); };
   return description;

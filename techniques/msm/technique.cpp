@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/prefiltered_map.h"
 
 namespace penumbra::techniques {
 namespace {
@@ -37,24 +37,16 @@ class MomentShadowMap : public Technique {
   void require(const TechniqueInput&, Requirements&) override {}
 
   void prepare(PrepareContext& context) override {
-    const ParameterValues& parameters = context.input.parameters;
-    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
-    shadow_maps::BlurSettings settings;
-    settings.encoder = "techniques/msm/moments.frag";
-    settings.format = choice_of(parameters, "precision") == "unorm16"
-                          ? VK_FORMAT_R16G16B16A16_UNORM
-                          : VK_FORMAT_R32G32B32A32_SFLOAT;
-    moments_.draw(context, depth_, settings);
+    const bool unorm16 = choice_of(context.input.parameters, "precision") == "unorm16";
+    map_.draw(context,
+              {.encoder = "techniques/msm/moments.frag",
+               .format = unorm16 ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT});
   }
 
-  void bind(vulkan::Bindings& bindings) const override {
-    depth_.bind(bindings);
-    moments_.bind(bindings);
-  }
+  void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
-  shadow_maps::DepthMap depth_;
-  shadow_maps::BlurredMap moments_;
+  shadow_maps::PrefilteredMap map_;
 };
 
 }  // namespace
@@ -69,9 +61,9 @@ TechniqueDescription describe_msm() {
   description.source = "Peters and Klein 2015, four moments, Hamburger problem";
   description.parameters = msm_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"moments", "Mean depth in red and ten times the deviation from it in green."},
-      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+      shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/msm/shadow.glsl";
   description.create = [] { return std::make_unique<MomentShadowMap>(); };
   return description;

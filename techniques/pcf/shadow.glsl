@@ -21,13 +21,11 @@ float mean_of_hardware_bilinear(MapPoint point, int size) {
   return lit / float(size * size);
 }
 
-const int largest_kernel = 33;  // of parameter kernel
-
 // Kernel as wide as the pixel's footprint where that is wider: 2 to the power of the mip level that a
 // filtered map would be read at (Adorjan 2013, 3.1).
 int adaptive_kernel(ShadowQuery query, MapPoint point) {
   float level = ceil(log2(max(footprint_width(map_footprint(query, point)), 1.0)));
-  return clamp(int(exp2(level)), parameter_kernel, largest_kernel);
+  return clamp(int(exp2(level)), parameter_kernel, parameter_kernel_maximum);
 }
 
 // Distance in texels that the filter reads from the receiver's place.

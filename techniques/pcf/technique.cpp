@@ -3,7 +3,7 @@
 namespace penumbra::techniques {
 namespace {
 
-constexpr std::int64_t largest_kernel = 33;  // texels; shadow.glsl names it too
+constexpr std::int64_t largest_kernel = 33;  // texels
 
 std::vector<Parameter> pcf_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
@@ -49,7 +49,8 @@ std::vector<Parameter> pcf_parameters() {
   adaptive.default_value = false;
   adaptive.meaning =
       "Widen the kernel to the texels that a pixel covers, rounded up to a power of two and at "
-      "most 33, where the map is finer than the picture.";
+      "most " +
+      std::to_string(largest_kernel) + ", where the map is finer than the picture.";
   adaptive.variant = true;
   list.push_back(adaptive);
   return list;
@@ -90,8 +91,7 @@ TechniqueDescription describe_pcf() {
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.4; Reeves, Salesin and Cook 1987";
   description.parameters = pcf_parameters();
-  description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."}};
+  description.diagnostics = {shadow_maps::map_diagnostic()};
   description.shader = "techniques/pcf/shadow.glsl";
   description.create = [] { return std::make_unique<PercentageCloserFilter>(); };
   return description;

@@ -72,7 +72,7 @@ TechniqueDescription describe_pcss() {
   description.source = "van Sambeek 2007, 2.2.5; Fernando 2005";
   description.parameters = pcss_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
       {"penumbra-width", "Width of the filter; white is an eighth of the map."}};
   description.shader = "techniques/pcss/shadow.glsl";

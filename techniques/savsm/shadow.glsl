@@ -1,9 +1,6 @@
 #include "renderer/shadow_maps/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/footprint.glsl"
-
-// Widest rectangle in texels; technique.cpp has the same.
-const int largest_width = parameter_adaptive == 1 ? 129 : parameter_kernel;
 #include "renderer/shadow_maps/summed_area.glsl"
 
 // Width of the filter, texels: the kernel, or what the pixel covers where that is wider.

@@ -4,30 +4,10 @@
 namespace penumbra::techniques {
 namespace {
 
-constexpr std::int64_t largest_kernel = 129;  // texels; shadow.glsl names it too
-
 std::vector<Parameter> savsm_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
-  Parameter kernel;
-  kernel.name = "kernel";
-  kernel.type = ParameterType::integer;
-  kernel.default_value = std::int64_t{5};
-  kernel.minimum = 1;
-  kernel.maximum = largest_kernel;
-  kernel.unit = "texels";
-  kernel.meaning = "Width of the filter; any width costs the same.";
-  kernel.variant = true;
-  list.push_back(kernel);
-
-  Parameter adaptive;
-  adaptive.name = "adaptive";
-  adaptive.type = ParameterType::boolean;
-  adaptive.default_value = true;
-  adaptive.meaning =
-      "Widen the filter, pixel by pixel, to the texels that a pixel covers, at most 129.";
-  adaptive.variant = true;
-  list.push_back(adaptive);
-  list.push_back(shadow_maps::table_parameter());
+  for (const Parameter& parameter : shadow_maps::summed_area_parameters())
+    list.push_back(parameter);
   list.push_back(shadow_maps::bleeding_parameter(0.2));
   list.push_back(shadow_maps::deviation_parameter());
   return list;
@@ -39,10 +19,9 @@ class SummedAreaVarianceShadowMap : public Technique {
   void require(const TechniqueInput&, Requirements&) override {}
 
   void prepare(PrepareContext& context) override {
-    const ParameterValues& parameters = context.input.parameters;
-    const std::int64_t kernel = integer_of(parameters, "kernel");
+    const std::int64_t kernel = integer_of(context.input.parameters, "kernel");
     depth_.draw(context, 0.5 * static_cast<double>(kernel));
-    table_.draw(context, depth_, boolean_of(parameters, "adaptive") ? largest_kernel : kernel);
+    table_.draw(context, depth_);
   }
 
   void bind(vulkan::Bindings& bindings) const override {
@@ -67,7 +46,7 @@ TechniqueDescription describe_savsm() {
   description.source = "Adorjan 2013, 2.2.1, 3.3.4 and 3.3.5; Lauritzen 2007";
   description.parameters = savsm_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"moments",
        "Mean depth by the table: of one texel red, of the kernel green; the map's own depth blue."},
       {"filter-width",

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/prefiltered_map.h"
 
 namespace penumbra::techniques {
 namespace {
@@ -19,23 +19,14 @@ class VarianceShadowMap : public Technique {
   void require(const TechniqueInput&, Requirements&) override {}
 
   void prepare(PrepareContext& context) override {
-    const ParameterValues& parameters = context.input.parameters;
-    depth_.draw(context, static_cast<double>(integer_of(parameters, "blur")) + 0.5);
-    const bool half = choice_of(parameters, "precision") == "fp16";
-    shadow_maps::BlurSettings settings;
-    settings.encoder = "techniques/vsm/moments.frag";
-    settings.format = half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
-    moments_.draw(context, depth_, settings);
+    map_.draw(context, {.encoder = "techniques/vsm/moments.frag",
+                        .format = shadow_maps::float_format(context.input.parameters, 2)});
   }
 
-  void bind(vulkan::Bindings& bindings) const override {
-    depth_.bind(bindings);
-    moments_.bind(bindings);
-  }
+  void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
-  shadow_maps::DepthMap depth_;
-  shadow_maps::BlurredMap moments_;
+  shadow_maps::PrefilteredMap map_;
 };
 
 }  // namespace
@@ -50,9 +41,9 @@ TechniqueDescription describe_vsm() {
   description.source = "van Sambeek 2007, 2.2.6; Donnelly and Lauritzen 2006";
   description.parameters = vsm_parameters();
   description.diagnostics = {
-      {"map", "The depth map as the light sees it: near is dark, far is bright."},
+      shadow_maps::map_diagnostic(),
       {"moments", "Mean depth in red and ten times the deviation from it in green."},
-      {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."}};
+      shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/vsm/shadow.glsl";
   description.create = [] { return std::make_unique<VarianceShadowMap>(); };
   return description;

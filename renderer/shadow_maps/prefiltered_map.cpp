@@ -1,0 +1,23 @@
+#include "renderer/shadow_maps/prefiltered_map.h"
+
+namespace penumbra::shadow_maps {
+
+VkFormat float_format(const ParameterValues& parameters, int components) {
+  const bool half = choice_of(parameters, "precision") == "fp16";
+  if (components == 1) return half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
+  if (components == 2) return half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
+  return half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+void PrefilteredMap::draw(PrepareContext& context, const BlurSettings& settings) {
+  // A sampler interpolates: it reads half a texel beyond the blur.
+  depth_.draw(context, static_cast<double>(integer_of(context.input.parameters, "blur")) + 0.5);
+  blurred_.draw(context, depth_, settings);
+}
+
+void PrefilteredMap::bind(vulkan::Bindings& bindings) const {
+  depth_.bind(bindings);
+  blurred_.bind(bindings);
+}
+
+}  // namespace penumbra::shadow_maps
