@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/error.h"
+
 namespace penumbra::shadow_maps {
 
 std::vector<Parameter> map_parameters() {
@@ -73,6 +75,54 @@ std::vector<Parameter> map_parameters() {
   return list;
 }
 
+namespace {
+
+Parameter range_parameter(const char* name, const char* meaning) {
+  Parameter range;
+  range.name = name;
+  range.default_value = 0.0;
+  range.minimum = 0.0;
+  range.maximum = 1e6;
+  range.unit = "m";
+  range.meaning = meaning;
+  return range;
+}
+
+}  // namespace
+
+std::vector<Parameter> comparing_map_parameters() {
+  std::vector<Parameter> list = map_parameters();
+  Parameter depth;
+  depth.name = "depth";
+  depth.type = ParameterType::choice;
+  depth.choices = {"linear", "hyperbolic"};
+  depth.default_value = std::string("linear");
+  depth.meaning =
+      "How distances share the map's numbers. linear: evenly. hyperbolic: evenly in 1/z, as a "
+      "projection has it, so that few are left far from the light; directional lights have no "
+      "such.";
+  depth.variant = true;
+  list.push_back(depth);
+
+  Parameter bits;
+  bits.name = "depth_bits";
+  bits.type = ParameterType::choice;
+  bits.choices = {"32", "16"};
+  bits.default_value = std::string("32");
+  bits.meaning = "What a depth is kept in: a float of 32 bits, or one of 65,536 steps.";
+  bits.variant = true;
+  list.push_back(bits);
+
+  list.push_back(range_parameter(
+      "near",
+      "Distance along the light's axis at which the map's range begins, for a directional light "
+      "from the scene's box on. 0: fitted to the scene. Receivers before it are lit."));
+  list.push_back(range_parameter("far",
+                                 "Distance at which the range ends. 0: fitted to the scene. What "
+                                 "lies behind it casts no shadow."));
+  return list;
+}
+
 Diagnostic map_diagnostic() {
   return {"map", "The depth map's first face as the light sees it: near is dark, far is bright."};
 }
@@ -86,6 +136,29 @@ bool knows_two_surfaces(const ParameterValues& parameters) {
          strategy == "auto";
 }
 
+VkFormat depth_format(const ParameterValues& parameters) {
+  const bool compact =
+      parameters.contains("depth_bits") && choice_of(parameters, "depth_bits") == "16";
+  return compact ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
+}
+
+/// The range that parameters ask for in place of what was fitted.
+void set_range(LightView& view, const ParameterValues& parameters) {
+  if (!parameters.contains("near")) return;
+  const auto near = static_cast<float>(real_of(parameters, "near"));
+  const auto far = static_cast<float>(real_of(parameters, "far"));
+  if (near > 0.0f) view.near_distance = near;
+  if (far > 0.0f) view.far_distance = far;
+  // 1/z begins somewhere before 0.
+  if (choice_of(parameters, "depth") == "hyperbolic")
+    view.near_distance = std::max(view.near_distance, 1e-4f * view.far_distance);
+  if (view.near_distance >= view.far_distance)
+    throw bad_value(near > 0.0f ? "near" : "far",
+                    "the map's range must end behind where it begins, but near is " +
+                        to_text(double{view.near_distance}) + " m and far " +
+                        to_text(double{view.far_distance}) + " m (0 fits them to the scene)");
+}
+
 }  // namespace
 
 void DepthMap::draw(PrepareContext& context, double kernel_radius, double border) {
@@ -93,10 +166,11 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius, double border
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
   // Room at the borders, up to a quarter of the map.
   const double guard = std::min((border + 1.0) / size, 0.5 - 0.5 / widest_filtered_cone);
-  const LightView view = fit_light_view(context.scene, context.light, size, guard);
+  LightView view = fit_light_view(context.scene, context.light, size, guard);
+  set_range(view, parameters);
   if (!image_) {
     vulkan::ImageDescription description;
-    description.format = VK_FORMAT_D32_SFLOAT;
+    description.format = depth_format(parameters);
     description.width = description.height = size;
     description.layers = static_cast<std::uint32_t>(view.faces.size());
     description.array_view = true;
@@ -129,7 +203,7 @@ void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
   program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/depth_map.vert"},
                     {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/depth_map.frag"}};
   program.preamble = context.declarations + layer;
-  program.state.depth_format = VK_FORMAT_D32_SFLOAT;
+  program.state.depth_format = target.description().format;
   program.state.depth_test = program.state.depth_write = true;
   program.state.depth_compare = VK_COMPARE_OP_LESS;
   program.state.depth_clamp = true;
@@ -140,7 +214,7 @@ void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
       vulkan::RenderTargets targets;
       targets.width = targets.height = target.description().width;
       targets.depth = target.slice(face);
-      targets.depth_format = VK_FORMAT_D32_SFLOAT;
+      targets.depth_format = target.description().format;
       targets.clear_depth = true;
       targets.depth_clear_value = 1.0f;
       vulkan::Bindings bindings;
@@ -157,8 +231,10 @@ void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
 
 void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
   if (!first_) {
-    first_ = vulkan::Image(context.device, context.memory, "first depths", image_.description());
-    second_ = vulkan::Image(context.device, context.memory, "second depths", image_.description());
+    vulkan::ImageDescription layer = image_.description();
+    layer.format = VK_FORMAT_D32_SFLOAT;
+    first_ = vulkan::Image(context.device, context.memory, "first depths", layer);
+    second_ = vulkan::Image(context.device, context.memory, "second depths", layer);
   }
   draw_casters(context, view, first_, "#define LAYER\n");
   draw_casters(context, view, second_, "#define LAYER\n#define SECOND_LAYER\n");
@@ -168,7 +244,7 @@ void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/layered_depths.frag"}};
   source.preamble = context.declarations;
   vulkan::GraphicsState state;
-  state.depth_format = VK_FORMAT_D32_SFLOAT;
+  state.depth_format = image_.description().format;
   state.depth_test = state.depth_write = true;
   state.depth_compare = VK_COMPARE_OP_ALWAYS;
   const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
@@ -181,7 +257,7 @@ void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
       vulkan::RenderTargets targets;
       targets.width = targets.height = image_.description().width;
       targets.depth = image_.slice(face);
-      targets.depth_format = VK_FORMAT_D32_SFLOAT;
+      targets.depth_format = image_.description().format;
       commands.begin_rendering(targets);
       commands.bind(pipeline, bindings);
       commands.constants(face);

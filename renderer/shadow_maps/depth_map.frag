@@ -1,8 +1,8 @@
-// Linear depth, computed anew for every fragment: interpolated depth would be wrong inside triangles.
+// Depth computed anew for every fragment: interpolated depth would be wrong inside triangles.
 #include "renderer/shaders/caster.glsl"
+#include "renderer/shadow_maps/depth_coding.glsl"
 
 layout(std140) uniform MapFaceBlock { MapFace face; };
-layout(std140) uniform MapBlock { MapData map; };
 
 #ifdef SECOND_LAYER
 uniform sampler2D first_depths;
@@ -43,6 +43,8 @@ void main() {
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
     bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
-  gl_FragDepth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
+  bias += map.texel.w * coding_error(distance);
+  float depth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
+  gl_FragDepth = coded_depth(depth);
 #endif
 }

@@ -1,4 +1,4 @@
-// Reading a linear depth map: where a receiver lies on it, and comparisons texel by texel.
+// Reading a depth map: where a receiver lies on it, and comparisons texel by texel.
 //
 // Filters never touch the map's image: they call locate, then compare_texel or fetch_depth with whole
 // texels near the place found. Another layout plugs in here, chosen by the constant parameter_layout:
@@ -7,13 +7,13 @@
 //     functions that are affine in texels, which any projective view has, warped ones included;
 //   - fetch_depth answers the stored depth of a texel of that view (from an image here; from a storage
 //     buffer elsewhere, where no sampler reaches), 0 at near and 1 at far;
-//   - receiver_depth turns metres into those units.
+//   - receiver_depth turns metres into those units, distance_of_depth turns them back.
 // Only filter hardware-bilinear reads the image itself, so it serves layouts that are one image.
 #ifndef PENUMBRA_DEPTH_MAP_GLSL
 #define PENUMBRA_DEPTH_MAP_GLSL
 #include "renderer/shaders/shadow_query.glsl"
+#include "renderer/shadow_maps/depth_coding.glsl"
 
-layout(std140) uniform MapBlock { MapData map; };
 uniform sampler2DArray shadow_map;
 
 /// A receiver on the map.
@@ -114,10 +114,14 @@ float plane_distance(MapPoint point, vec2 offset) {
   return clamp(top / bottom, max(steep, point.nearest), point.distance);
 }
 
-/// Metres along the axis in the map's units.
-float depth_of_distance(float distance) { return (distance - map.range.x) * map.range.z; }
+/// Metres along the axis in the map's units, and back.
+float depth_of_distance(float distance) {
+  return coded_depth((distance - map.range.x) * map.range.z);
+}
+float distance_of_depth(float depth) { return map.range.x + even_depth(depth) / map.range.z; }
 
-/// The receiver's depth to compare with a texel of the map.
+/// The receiver's depth to compare with a texel of the map. Like casters, receivers behind far stand at
+/// it, where the map was given a far of its own.
 float receiver_depth(MapPoint point, ivec2 texel) {
   float distance = point.distance;
   // Maps of back faces need it where a body is thinner than its slope over a texel.
@@ -127,7 +131,7 @@ float receiver_depth(MapPoint point, ivec2 texel) {
     float met = plane_distance(point, vec2(texel) + 0.5 - point.texel);
     distance += map.texel.w * (met - point.distance);
   }
-  return depth_of_distance(distance - point.grant);
+  return min(depth_of_distance(distance - point.grant), 1.0);
 }
 
 /// Depth that the map holds; texels beyond the border repeat it.

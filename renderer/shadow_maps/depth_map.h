@@ -9,12 +9,16 @@ namespace penumbra::shadow_maps {
 /// slope_scale. Techniques append their own.
 std::vector<Parameter> map_parameters();
 
+/// Those and how depth is kept, for techniques that only compare it: depth, depth_bits, near, far.
+std::vector<Parameter> comparing_map_parameters();
+
 /// The picture `map` of every program that includes renderer/shadow_maps/diagnostics.glsl.
 Diagnostic map_diagnostic();
 
-/// A single linear depth map per light: what map techniques are composed from. Depth is the
-/// distance along the map's axis, 0 at near and 1 at far, written per fragment; D32, one layer a
-/// face. Bias strategies that know two surfaces draw both and make the map of them.
+/// A single depth map per light: what map techniques are composed from. Depth is the distance along
+/// the map's axis, 0 at near and 1 at far, written per fragment, even in 32 bits unless parameters
+/// ask for less; one layer a face. Bias strategies that know two surfaces draw both and make the
+/// map of them.
 class DepthMap {
  public:
   /// Draws the map for this frame. `kernel_radius` in texels is how far the filter reads from the

@@ -1,7 +1,6 @@
 // The map to compare with, from the two surfaces that are nearest to the light.
-#include "renderer/shaders/shader_types.h"
+#include "renderer/shadow_maps/depth_coding.glsl"
 
-layout(std140) uniform MapBlock { MapData map; };
 uniform sampler2DArray first_depths;
 uniform sampler2DArray second_depths;  // 1 where there is no second surface
 
@@ -28,5 +27,6 @@ void main() {
   if (parameter_bias_strategy == bias_strategy_dual_depth ||
       parameter_bias_strategy == bias_strategy_auto)
     depth = min(depth, first + greatest_offset(first) * map.range.z);
-  gl_FragDepth = clamp(depth + map.texel.z * map.range.z, 0.0, 1.0);
+  float bias = map.texel.z + map.texel.w * coding_error(map.range.x + depth / map.range.z);
+  gl_FragDepth = coded_depth(clamp(depth + bias * map.range.z, 0.0, 1.0));
 }

@@ -6,7 +6,7 @@ namespace {
 constexpr std::int64_t largest_kernel = 33;  // texels
 
 std::vector<Parameter> pcf_parameters() {
-  std::vector<Parameter> list = shadow_maps::map_parameters();
+  std::vector<Parameter> list = shadow_maps::comparing_map_parameters();
   Parameter kernel;
   kernel.name = "kernel";
   kernel.type = ParameterType::integer;

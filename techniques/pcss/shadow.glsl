@@ -58,7 +58,7 @@ ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
 float reach_of_casters(MapPoint point, ExtentOnMap extent) {
   float widest = reach(point, map.range.x);
   for (int round = 0; round < 4; ++round) {
-    float nearest = map.range.x + nearest_depth(point, texels_of(extent, widest) + 1.0) / map.range.z;
+    float nearest = distance_of_depth(nearest_depth(point, texels_of(extent, widest) + 1.0));
     widest = min(widest, reach(point, nearest));
   }
   return widest;
@@ -82,7 +82,7 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
     ivec2 texel = texel_at(point, extent, tap, widest);
     float stored = fetch_depth(point, texel);
     if (receiver_depth(point, texel) <= stored) continue;
-    float distance = map.range.x + stored / map.range.z;
+    float distance = distance_of_depth(stored);
     // A tap stands for an area: the inverse of the taps' density there.
     float share = 1.0 / (1.0 + 0.25 * pow(max(away, 1e-4), -1.5));
     sum += share * distance;

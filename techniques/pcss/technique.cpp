@@ -17,7 +17,7 @@ Parameter taps_parameter(const char* name, std::int64_t count, const char* meani
 }
 
 std::vector<Parameter> pcss_parameters() {
-  std::vector<Parameter> list = shadow_maps::map_parameters();
+  std::vector<Parameter> list = shadow_maps::comparing_map_parameters();
   list.push_back(taps_parameter("search_taps", 32, "Texels searched for blockers, per pixel."));
   list.push_back(taps_parameter("taps", 64,
                                 "Comparisons of the filter, per pixel where blockers were found."));

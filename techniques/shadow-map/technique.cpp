@@ -24,7 +24,7 @@ TechniqueDescription describe_shadow_map() {
   description.title = "Shadow map";
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.1-2.2.3 and 3.2.4; Williams 1978";
-  description.parameters = shadow_maps::map_parameters();
+  description.parameters = shadow_maps::comparing_map_parameters();
   description.diagnostics = {shadow_maps::map_diagnostic()};
   description.shader = "techniques/shadow-map/shadow.glsl";
   description.create = [] { return std::make_unique<ShadowMap>(); };

@@ -61,6 +61,13 @@ INSTANTIATE_TEST_SUITE_P(Blockers, Penumbra, testing::Values("pcss", "pcss-neare
                            return std::string(instance.param) == "pcss" ? "average" : "nearest";
                          });
 
+TEST(SoftShadows, are_as_wide_where_the_map_keeps_1_z) {
+  const double expected = 1.0 / (lamp_height - 1.0);
+  const ParameterValues parameters{{"depth", std::string("hyperbolic")}, {"near", 0.1}};
+  EXPECT_NEAR(penumbra_width(draw(edge_at(1.0), "pcss", parameters, 100)), expected,
+              0.15 * expected);
+}
+
 TEST(SoftShadows, a_light_without_extent_casts_the_filters_own_border) {
   Scene scene = edge_at(1.0);
   scene.lights[0].extent = {};
