@@ -8,6 +8,8 @@
 struct ExtentOnMap {
   vec2 right;
   vec2 up;
+  vec3 world_right;  // the half sizes in the world, m, of directional lights against a distance of 1
+  vec3 world_up;
   bool square;  // rectangle; otherwise round
 };
 
@@ -26,6 +28,8 @@ ExtentOnMap extent_on_map(int face_index) {
   extent.right = half_size.x * texels *
                  vec2(dot(along_right, face.right.xyz), dot(along_right, face.up.xyz));
   extent.up = half_size.y * texels * vec2(dot(along_up, face.right.xyz), dot(along_up, face.up.xyz));
+  extent.world_right = half_size.x * along_right;
+  extent.world_up = half_size.y * along_up;
   extent.square = square;
   return extent;
 }
@@ -93,6 +97,27 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
   return parameter_blocker == blocker_nearest ? nearest : sum / count;
 }
 
+// What a tap stands for: light from one place of the extent. Behind the receiver's own plane it does
+// not reach it.
+bool is_risen(ShadowQuery query, ExtentOnMap extent, vec2 tap) {
+  bool directional = int(light.position.w) == light_kind_directional;
+  vec3 to_light = directional ? query.to_light : query.to_light * query.light_distance;
+  return dot(query.normal, to_light + tap.x * extent.world_right + tap.y * extent.world_up) > 0.0;
+}
+
+// Share of the extent that stands over the receiver's horizon.
+float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
+  if (parameter_horizon == 0) return 1.0;
+  bool directional = int(light.position.w) == light_kind_directional;
+  float height = dot(query.normal, query.to_light) * (directional ? 1.0 : query.light_distance);
+  vec2 reach = abs(vec2(dot(query.normal, extent.world_right), dot(query.normal, extent.world_up)));
+  if (height > reach.x + reach.y) return 1.0;
+  float risen = 0.0;
+  for (int i = 0; i < parameter_taps; ++i)
+    risen += is_risen(query, extent, extent_tap(extent, i, parameter_taps, rotation)) ? 1.0 : 0.0;
+  return risen / float(parameter_taps);
+}
+
 float calculate_shadow(ShadowQuery query) {
   MapPoint point = locate(query, 0.5);
   if (point.face < 0) return 1.0;
@@ -100,12 +125,13 @@ float calculate_shadow(ShadowQuery query) {
   if (int(light.extent.x) == 0) return mean_of_bilinear(point, 1);
   ExtentOnMap extent = extent_on_map(point.face);
   float rotation = tap_rotation(query.pixel);
+  float risen = risen_share(query, extent, rotation);
   float blocker = find_blocker(point, extent, rotation);
-  if (blocker < 0.0) return 1.0;
+  if (blocker < 0.0) return risen;
   float size = reach(point, blocker);
   float radius = texels_of(extent, size);
   // Below a texel the map knows no more than its own interpolation.
-  if (radius < 1.0) return mean_of_bilinear(point, 1);
+  if (radius < 1.0) return risen * mean_of_bilinear(point, 1);
   // The bias of a wide kernel would let light in where a wall meets the ground.
   point = locate(query, min(radius, 2.0));
   // A narrow facet's plane soon leads away from its body, through what shadows it: halfway to the
@@ -114,6 +140,7 @@ float calculate_shadow(ShadowQuery query) {
   float lit = 0.0;
   for (int i = 0; i < parameter_taps; ++i) {
     vec2 tap = extent_tap(extent, i, parameter_taps, rotation);
+    if (risen < 1.0 && !is_risen(query, extent, tap)) continue;
     lit += compare_texel(point, texel_at(point, extent, tap, size));
   }
   return lit / float(parameter_taps);

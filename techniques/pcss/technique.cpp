@@ -32,6 +32,16 @@ std::vector<Parameter> pcss_parameters() {
       "to the light.";
   blocker.variant = true;
   list.push_back(blocker);
+
+  Parameter horizon;
+  horizon.name = "horizon";
+  horizon.type = ParameterType::boolean;
+  horizon.default_value = true;
+  horizon.meaning =
+      "Leave out what part of the light stands behind the receiver's own plane: a map of biased "
+      "comparisons does not know that a body shadows itself there.";
+  horizon.variant = true;
+  list.push_back(horizon);
   return list;
 }
 

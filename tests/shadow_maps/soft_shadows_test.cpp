@@ -74,6 +74,26 @@ TEST(SoftShadows, a_light_without_extent_casts_the_filters_own_border) {
   EXPECT_EQ(draw(scene, "pcss").visibility.pixels, draw(scene, "pcf-bilinear").visibility.pixels);
 }
 
+/// Ground under a square light of 1 m that stands upright, its middle 0.25 m over the ground's
+/// plane.
+Scene half_risen_light() {
+  Scene scene = empty_scene(2.0, 1.0);
+  add_plate(scene, {-3, -3}, {3, 3}, 0.0);
+  Light light = lamp({-4, 0.25, 0}, 40);
+  light.direction = {1, 0, 0};
+  light.extent.kind = ExtentKind::rectangle;
+  light.extent.size = {1.0, 1.0};
+  scene.lights.push_back(light);
+  return scene;
+}
+
+TEST(SoftShadows, light_behind_the_receivers_plane_does_not_count) {
+  EXPECT_THAT(draw(half_risen_light(), "pcss").visibility.pixels,
+              testing::Each(testing::FloatNear(0.75f, 0.02f)));
+  EXPECT_THAT(draw(half_risen_light(), "pcss", {{"horizon", false}}).visibility.pixels,
+              testing::Each(1.0f));
+}
+
 TEST(SoftShadows, where_nothing_blocks_nothing_is_filtered) {
   Scene scene = edge_at(1.0);
   scene.cameras[0].position.x = scene.cameras[0].target.x = 1.6;
