@@ -1,11 +1,19 @@
-// How bias trades acne for detached shadows: bench_bias [--size N] [--scenes a,b] [--device NAME]
+// How bias trades acne for detached shadows:
+//   bench_bias [--part best|sweep|depth] [--size N] [--scenes a,b] [--filters a,b] [--maps N,N]
+//              [--device NAME]
 //
-// For every scene and strategy, the share of pixels that are falsely shadowed (acne) and falsely
-// lit (detached shadows, leaks), against the exact hard shadow, over the two numbers a user may
-// turn: bias in metres, as a share of the scene's size, and slope_scale.
-#include <algorithm>
+// Errors are the root mean square of visibility, and the shares of pixels that are falsely shadowed
+// (acne) and falsely lit (detached shadows, leaks), over the strategies and the two numbers that a
+// user may turn: bias in metres, as a share of the scene's size, and slope_scale. The truth is the
+// exact hard shadow, for pcss the soft one.
+//
+// best prints what tuning by hand gains over strategy auto, for every scene, filter and size of the
+// map; sweep prints every setting of slope_scale 1; depth what even and hyperbolic depth in 32 and
+// 16 bits cost, over a fitted range and over one that a person might fix for any scene, each with
+// the bias that it asks for.
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "renderer/error.h"
@@ -19,39 +27,80 @@ namespace {
 using namespace penumbra;
 
 struct Options {
-  std::uint32_t size = 300;
+  std::string part = "best";
+  std::uint32_t size = 200;
   std::string scenes = "car,boxes,disco-box,island,warehouse-inside,warehouse-outside";
+  std::string filters = "hard,pcf-3,pcf-9,pcss";
+  std::string maps = "256,512,1024";
   std::string device;
 };
 
 Options read_options(int count, char** values) {
   Options options;
+  const std::map<std::string, std::string*> texts{{"--part", &options.part},
+                                                  {"--scenes", &options.scenes},
+                                                  {"--filters", &options.filters},
+                                                  {"--maps", &options.maps},
+                                                  {"--device", &options.device}};
   for (int i = 1; i + 1 < count; i += 2) {
     const std::string name = values[i];
     if (name == "--size")
       options.size = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--scenes")
-      options.scenes = values[i + 1];
-    else if (name == "--device")
-      options.device = values[i + 1];
+    else if (texts.contains(name))
+      *texts.at(name) = values[i + 1];
     else
-      throw bad_value(name, "bench_bias takes --size, --scenes and --device");
+      throw bad_value(name,
+                      "bench_bias takes --part, --size, --scenes, --filters, --maps, --device");
   }
   return options;
 }
 
-/// One scene, its truth, and errors of settings against it.
+std::vector<std::string> items(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+struct Filter {
+  std::string technique;
+  ParameterValues parameters;
+};
+
+/// hard, pcf-3, pcf-9, or the id of a map technique or preset.
+Filter filter_of(const std::string& name) {
+  if (name == "hard") return {"shadow-map", {}};
+  if (name == "pcf-3") return {"pcf", {{"kernel", std::int64_t{3}}}};
+  if (name == "pcf-9") return {"pcf", {{"kernel", std::int64_t{9}}}};
+  return {name, {}};
+}
+
+struct Setting {
+  std::string strategy;
+  double bias = 0.0;  ///< m
+  double slope_scale = 1.0;
+};
+
+/// One scene, its truths, and errors of settings against them.
 class Subject {
  public:
   Subject(Renderer& renderer, const std::string& id, std::uint32_t size)
       : renderer_(renderer), scene_(scenes::load(id)), size_(size) {
-    truth_ = render("ray-traced", {}).visibility;
+    hard_truth_ = render("ray-traced", {}, 1).visibility;
   }
 
-  metrics::VisibilityError error(const std::string& strategy, double bias, double slope_scale) {
-    const RenderResult result = render(
-        "shadow-map", {{"bias_strategy", strategy}, {"bias", bias}, {"slope_scale", slope_scale}});
-    return metrics::visibility_error(result.visibility, truth_, result.judged);
+  metrics::VisibilityError error(Filter filter, std::int64_t map_size, const Setting& setting) {
+    filter.parameters["bias_strategy"] = setting.strategy;
+    filter.parameters["bias"] = setting.bias;
+    filter.parameters["slope_scale"] = setting.slope_scale;
+    return error(filter, map_size);
+  }
+
+  metrics::VisibilityError error(const Filter& filter, std::int64_t map_size) {
+    ParameterValues parameters = filter.parameters;
+    parameters["map_size"] = map_size;
+    const RenderResult result = render(filter.technique, parameters, 1);
+    return metrics::visibility_error(result.visibility, truth_of(filter), result.judged);
   }
 
   /// Diagonal of the scene's box, m.
@@ -61,14 +110,21 @@ class Subject {
   }
 
  private:
-  RenderResult render(const std::string& technique, const ParameterValues& parameters) {
+  const ImageF& truth_of(const Filter& filter) {
+    if (filter.technique != "pcss") return hard_truth_;
+    if (soft_truth_.pixels.empty()) soft_truth_ = render("reference", {}, 256).visibility;
+    return soft_truth_;
+  }
+
+  RenderResult render(const std::string& technique, const ParameterValues& parameters,
+                      std::uint32_t light_samples) {
     const auto resolved = techniques::resolve(technique, parameters);
     RenderRequest request;
     request.scene = scene_;
     request.technique = resolved.technique;
     request.parameters = resolved.parameters;
     request.width = request.height = size_;
-    request.light_samples = 1;
+    request.light_samples = light_samples;
     request.visibility = true;
     return renderer_.render(request);
   }
@@ -76,62 +132,134 @@ class Subject {
   Renderer& renderer_;
   std::shared_ptr<const Scene> scene_;
   std::uint32_t size_;
-  ImageF truth_;
+  ImageF hard_truth_;
+  ImageF soft_truth_;
 };
 
-struct Best {
-  double error = 1e9;
-  std::string settings;
-};
+double sum_of(const metrics::VisibilityError& error) {
+  return error.false_shadow + error.missing_shadow;
+}
 
-/// A row for each setting of one strategy; keeps the best.
-void sweep(Subject& subject, const std::string& scene, const std::string& strategy, Best& best) {
-  for (const double slope_scale : {0.0, 0.5, 1.0, 2.0}) {
-    for (const double share : {0.0, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
-      const double bias = share * subject.extent();
-      const auto error = subject.error(strategy, bias, slope_scale);
-      const double both = error.false_shadow + error.missing_shadow;
-      if (slope_scale == 1.0)
-        std::printf("| %s | %s | %.4g | %.4f | %.4f | %.4f |\n", scene.c_str(), strategy.c_str(),
-                    bias, error.false_shadow, error.missing_shadow, both);
-      char settings[96];
-      std::snprintf(settings, sizeof settings, "%s, bias %.3g, slope_scale %g", strategy.c_str(),
-                    bias, slope_scale);
-      if (both < best.error) best = {both, settings};
-    }
+/// Everything that a person may try.
+std::vector<Setting> settings_by_hand(double extent) {
+  std::vector<Setting> list;
+  for (const char* strategy : {"constant", "slope", "normal-offset", "receiver-plane", "back-faces",
+                               "second-depth", "midpoint", "dual-depth"})
+    for (const double slope_scale : {0.0, 1.0, 2.0})
+      for (const double share : {0.0, 1e-4, 3e-4, 1e-3, 3e-3})
+        list.push_back({strategy, share * extent, slope_scale});
+  return list;
+}
+
+void print_sweep(Subject& subject, const std::string& scene, const std::string& filter,
+                 std::int64_t map_size) {
+  for (const Setting& setting : settings_by_hand(subject.extent())) {
+    if (setting.slope_scale != 1.0) continue;
+    const auto error = subject.error(filter_of(filter), map_size, setting);
+    std::printf("| %s | %s | %lld | %s | %.4g | %.4f | %.4f | %.4f |\n", scene.c_str(),
+                filter.c_str(), static_cast<long long>(map_size), setting.strategy.c_str(),
+                setting.bias, error.false_shadow, error.missing_shadow, sum_of(error));
   }
 }
 
-void run(const Options& options) {
-  Renderer renderer({options.device, false});
-  std::printf("Device: %s (%s). Pictures %ux%u, maps 512x512, one ray a pixel as the truth.\n\n",
-              renderer.device().name.c_str(), renderer.device().driver.c_str(), options.size,
-              options.size);
-  std::printf("| scene | strategy | bias, m | false shadow | missing shadow | sum |\n");
-  std::printf("|---|---|---|---|---|---|\n");
-  std::ostringstream summary;
-  std::istringstream list(options.scenes);
-  for (std::string scene; std::getline(list, scene, ',');) {
-    Subject subject(renderer, scene, options.size);
-    Best best;
-    for (const char* strategy : {"constant", "slope", "normal-offset", "receiver-plane",
-                                 "back-faces", "second-depth", "midpoint", "dual-depth"})
-      sweep(subject, scene, strategy, best);
-    const auto untouched = subject.error("auto", 0.0, 1.0);
-    const auto plane = subject.error("receiver-plane", 0.0, 1.0);
-    const double both = untouched.false_shadow + untouched.missing_shadow;
-    char row[256];
-    std::snprintf(row, sizeof row, "| %s | %.4f | %.4f | %.4f | %.4f | %.4f | %s | %.2f |\n",
-                  scene.c_str(), untouched.false_shadow, untouched.missing_shadow, both,
-                  plane.false_shadow + plane.missing_shadow, best.error, best.settings.c_str(),
-                  both / best.error);
-    summary << row;
-    std::fflush(stdout);
+/// The setting by hand with the least of one measure.
+struct Best {
+  double value = 1e9;
+  Setting setting;
+
+  void offer(double offered, const Setting& by) {
+    if (offered < value) *this = {offered, by};
   }
-  std::printf(
-      "\n| scene | auto: false | missing | sum | receiver-plane: sum | best by hand: sum | its "
-      "settings | auto / best |\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n%s", summary.str().c_str());
+  std::string text() const {
+    char line[96];
+    std::snprintf(line, sizeof line, "%.4f (%s, %.3g, %g)", value, setting.strategy.c_str(),
+                  setting.bias, setting.slope_scale);
+    return line;
+  }
+};
+
+void print_best(Subject& subject, const std::string& scene, const std::string& filter,
+                std::int64_t map_size) {
+  Best least_rms, least_sum;
+  const auto error = [&](const Setting& setting) {
+    return subject.error(filter_of(filter), map_size, setting);
+  };
+  for (const Setting& setting : settings_by_hand(subject.extent())) {
+    const auto errors = error(setting);
+    least_rms.offer(errors.rms, setting);
+    least_sum.offer(sum_of(errors), setting);
+  }
+  const auto untouched = error({"auto"});
+  const auto plane = error({"receiver-plane"});
+  std::printf("| %s | %s | %lld | %.4f | %.4f | %s | %.2f | %.2f | %.4f | %.4f | %s | %.2f |\n",
+              scene.c_str(), filter.c_str(), static_cast<long long>(map_size), untouched.rms,
+              plane.rms, least_rms.text().c_str(), untouched.rms / least_rms.value,
+              plane.rms / least_rms.value, untouched.false_shadow, untouched.missing_shadow,
+              least_sum.text().c_str(), sum_of(untouched) / least_sum.value);
+}
+
+void print_depths(Subject& subject, const std::string& scene, const std::string& filter,
+                  std::int64_t map_size) {
+  const double near = 1e-4 * subject.extent(), far = 4.0 * subject.extent();
+  for (const bool fitted : {true, false})
+    for (const char* bits : {"32", "16"})
+      for (const char* depth : {"linear", "hyperbolic"}) {
+        Filter coded = filter_of(filter);
+        coded.parameters["depth"] = std::string(depth);
+        coded.parameters["depth_bits"] = std::string(bits);
+        coded.parameters["near"] = fitted ? 0.0 : near;
+        coded.parameters["far"] = fitted ? 0.0 : far;
+        const auto error = subject.error(coded, map_size);
+        char range[64] = "fitted";
+        if (!fitted) std::snprintf(range, sizeof range, "%.3g to %.3g m", near, far);
+        std::printf("| %s | %s | %lld | %s | %s | %s | %.4f | %.4f | %.4f |\n", scene.c_str(),
+                    filter.c_str(), static_cast<long long>(map_size), range, bits, depth,
+                    error.false_shadow, error.missing_shadow, sum_of(error));
+      }
+}
+
+/// How each part begins its table, and prints what one scene, filter and size add to it.
+struct Part {
+  const char* head;
+  void (*print)(Subject&, const std::string& scene, const std::string& filter,
+                std::int64_t map_size);
+};
+
+const std::map<std::string, Part>& parts() {
+  static const std::map<std::string, Part> list{
+      {"best",
+       {"| scene | filter | map | auto: rms | plane: rms | best rms (by) | auto / best | plane / "
+        "best "
+        "| auto: false | missing | best sum (by) | auto / best |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        print_best}},
+      {"sweep",
+       {"| scene | filter | map | strategy | bias, m | false shadow | missing shadow | sum |\n"
+        "|---|---|---|---|---|---|---|---|\n",
+        print_sweep}},
+      {"depth",
+       {"| scene | filter | map | range | bits | depth | false shadow | missing shadow | sum |\n"
+        "|---|---|---|---|---|---|---|---|---|\n",
+        print_depths}}};
+  return list;
+}
+
+void run(const Options& options) {
+  if (!parts().contains(options.part))
+    throw bad_value("--part", "there are best, sweep and depth, not " + options.part);
+  const Part& part = parts().at(options.part);
+  Renderer renderer({options.device, false});
+  std::printf("Device: %s (%s). Pictures %ux%u.\n\n", renderer.device().name.c_str(),
+              renderer.device().driver.c_str(), options.size, options.size);
+  std::printf("%s", part.head);
+  for (const std::string& scene : items(options.scenes)) {
+    Subject subject(renderer, scene, options.size);
+    for (const std::string& filter : items(options.filters))
+      for (const std::string& map_size : items(options.maps)) {
+        part.print(subject, scene, filter, std::atoll(map_size.c_str()));
+        std::fflush(stdout);
+      }
+  }
 }
 
 }  // namespace
