@@ -18,14 +18,20 @@ struct TechniqueDescription;  // renderer/technique.h
 
 /// Ranges of a request; the only place where they stand.
 struct RenderLimits {
-  static constexpr std::uint32_t max_size = 8192;          ///< pixels, width or height
+  static constexpr std::uint32_t max_size = 16384;  ///< pixels, width or height
   static constexpr std::uint32_t max_light_samples = 65536;
   static constexpr std::uint32_t max_frames = 1000;
+  static constexpr double max_error_bound = 255.0;  ///< levels of 8 bits
   static constexpr std::array<std::uint32_t, 3> supersampling{1, 4, 16};  ///< samples per pixel
 };
 
-/// Rules that drop what a picture does not need (renderer/scene/plan.h). The picture is the same with
-/// and without each; they are here so that what each saves can be measured.
+/// Samples along a side of a pixel; `supersampling` is one of RenderLimits's.
+constexpr std::uint32_t samples_per_side(std::uint32_t supersampling) {
+  return supersampling == 16 ? 4 : supersampling == 4 ? 2 : 1;
+}
+
+/// Rules that drop what a picture does not need (renderer/scene/plan.h). The picture is the same
+/// with and without each; they are here so that what each saves can be measured.
 struct PlanRules {
   bool lights = true;    ///< no light that reaches nothing visible
   bool surfaces = true;  ///< no surface that the camera cannot see
@@ -38,17 +44,20 @@ struct RenderRequest {
   std::shared_ptr<const Scene> scene;
   std::string camera;  ///< empty: the scene's first
   const TechniqueDescription* technique = nullptr;
-  ParameterValues parameters;            ///< of the technique; missing ones take their defaults
-  std::uint32_t width = 600;             ///< pixels
-  std::uint32_t height = 600;            ///< pixels
-  std::uint32_t supersampling = 1;       ///< samples per pixel of the frame: 1, 4 or 16
-  std::uint32_t light_samples = 1024;    ///< rays per pixel and light, for techniques that take many
+  ParameterValues parameters;          ///< of the technique; missing ones take their defaults
+  std::uint32_t width = 600;           ///< pixels
+  std::uint32_t height = 600;          ///< pixels
+  std::uint32_t supersampling = 1;     ///< samples per pixel of the frame: 1, 4 or 16
+  std::uint32_t light_samples = 1024;  ///< rays per pixel and light, for techniques that take many
   std::uint64_t seed = 1;
-  bool visibility = false;               ///< also return one visibility channel per light
-  bool linear = false;                   ///< also return linear light before encoding
-  bool uncertainty = false;              ///< also tell the error that finitely many light points leave
-  std::string diagnostic;                ///< name of a diagnostic picture of the technique, or empty
-  std::uint32_t frames = 1;              ///< counted frames; above 1 one uncounted frame goes first
+  bool visibility = false;   ///< also return one visibility channel per light
+  bool linear = false;       ///< also return linear light before encoding
+  /// Light points are drawn round by round until `noise_rms_y` is no more than this, or
+  /// light_samples of them are; 0: all of them.
+  double error_bound = 0.0;
+  bool uncertainty = false;  ///< also tell the error that finitely many light points leave
+  std::string diagnostic;    ///< name of a diagnostic picture of the technique, or empty
+  std::uint32_t frames = 1;  ///< counted frames; above 1 one uncounted frame goes first
   PlanRules rules;
 };
 
@@ -56,12 +65,12 @@ struct RenderRequest {
 struct PassCost {
   std::string name;
   double median_ms = 0.0;
-  std::uint64_t vertices = 0;             ///< input assembly vertices
-  std::uint64_t primitives = 0;           ///< input assembly primitives
+  std::uint64_t vertices = 0;    ///< input assembly vertices
+  std::uint64_t primitives = 0;  ///< input assembly primitives
   std::uint64_t vertex_invocations = 0;
   std::uint64_t geometry_invocations = 0;
   std::uint64_t geometry_primitives = 0;
-  std::uint64_t clipped_primitives = 0;   ///< primitives that leave the clipper
+  std::uint64_t clipped_primitives = 0;  ///< primitives that leave the clipper
   std::uint64_t fragment_invocations = 0;
   std::uint64_t compute_invocations = 0;
 };
@@ -74,6 +83,7 @@ struct ResourceCost {
 struct Cost {
   double median_ms = 0.0;  ///< device time of a frame
   double p95_ms = 0.0;
+  double spread = 0.0;  ///< half the distance between quartiles, as a share of the median
   std::uint32_t frames = 0;
   double wall_median_ms = 0.0;  ///< submission to fence
   double create_ms = 0.0;       ///< pipelines, buffers, uploads and the uncounted frame
@@ -82,15 +92,16 @@ struct Cost {
 };
 
 struct RenderResult {
-  Image8 picture;                ///< RGBA, sRGB-encoded
-  ImageF linear;                 ///< RGB, when asked for
-  ImageF visibility;             ///< a channel per light, 1 lit; when asked for
-  ImageF judged;                 ///< a channel per light: share of the pixel that faces the light
-                                 ///< inside its cone, where visibility means something
-  Image8 diagnostic;             ///< RGBA, when asked for
-  ImageF uncertainty;            ///< standard error of Y of the encoded picture, 0..255; when asked for
-                                 ///< and known, which takes a multiple of 16 points for each sample
+  Image8 picture;      ///< RGBA, sRGB-encoded
+  ImageF linear;       ///< RGB, when asked for
+  ImageF visibility;   ///< a channel per light, 1 lit; when asked for
+  ImageF judged;       ///< a channel per light: share of the pixel that faces the light
+                       ///< inside its cone, where visibility means something
+  Image8 diagnostic;   ///< RGBA, when asked for
+  ImageF uncertainty;  ///< standard error of Y of the encoded picture, 0..255; when asked for
+                       ///< and known, which takes a multiple of 16 points for each sample
   std::optional<double> noise_rms_y;  ///< root mean square of `uncertainty`: what it adds to rms_y
+  std::uint32_t light_samples = 0;    ///< drawn in each pixel: all, or fewer where the bound was met
   std::vector<std::string> light_names;
   Cost cost;
   std::uint64_t non_finite_pixels = 0;  ///< encoded as magenta
@@ -108,11 +119,23 @@ struct DeviceInfo {
 std::vector<DeviceInfo> list_devices();
 
 struct RendererOptions {
-  std::string device;       ///< part of a name, or an index; empty: a GPU if there is one, else lavapipe
+  std::string device;  ///< part of a name, or an index; empty: a GPU if there is one, else lavapipe
   bool validation = false;  ///< turn the validation layer on; its messages fail the render
+  /// Pictures with more samples are drawn window by window, so that memory for their size is there.
+  std::uint64_t most_window_samples = std::uint64_t{1} << 24;
 };
 
-/// Draws frames on one device. Not thread-safe; create one per thread.
+/// How a long render is followed, and taken up again where it was interrupted.
+struct RenderControl {
+  std::function<void(double)> progress;  ///< gets values from 0 to 1; throwing from it cancels
+  /// Called between the parts of a picture that is drawn in several (see Renderer). `state` makes
+  /// bytes from which the same request, on the same device, goes on after that part.
+  std::function<void(const std::function<std::string()>& state)> between_parts;
+  std::string resume;  ///< such bytes. Others are ignored, and the picture begins anew.
+};
+
+/// Draws frames on one device. A picture with very many samples is drawn window by window, one with
+/// very many light points, or with an error bound, round by round of its points. Not thread-safe; create one per thread.
 class Renderer {
  public:
   explicit Renderer(const RendererOptions& options);
@@ -120,9 +143,7 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// `progress` gets values from 0 to 1 during long renders; throwing from it cancels.
-  RenderResult render(const RenderRequest& request,
-                      const std::function<void(double)>& progress = {});
+  RenderResult render(const RenderRequest& request, const RenderControl& control = {});
 
   const DeviceInfo& device() const;
 

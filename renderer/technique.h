@@ -12,6 +12,7 @@
 
 namespace penumbra {
 
+struct RenderRequest;  // renderer/render.h
 class PrepareContext;  // renderer/frame/prepare_context.h: what a technique may use while it draws
 struct SampleList;     // renderer/frame/sample_list.h: samples of the frame
 namespace vulkan {
@@ -30,6 +31,10 @@ struct TechniqueInput {
   std::uint64_t seed;
 };
 
+/// What a light's task is in a picture; `parameters` are complete.
+TechniqueInput technique_input(const RenderRequest& request, const Light& light,
+                               const Camera& camera, const ParameterValues& parameters);
+
 /// Which instances may change what a technique answers for the surfaces that are seen.
 enum class CasterUse {
   none,  ///< none at all
@@ -47,10 +52,10 @@ struct Requirements {
   bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
   bool adjacency = false;               ///< index buffer of triangles with adjacency
   bool acceleration_structure = false;  ///< bounding volume hierarchy over the casters
-  std::uint32_t light_points = 1;       ///< points on the extent asked for one by one; 1: its centre
-  bool shade_each_point = false;        ///< light from each point, not from the centre
-  bool random_points = false;           ///< points from a seeded generator, not low-discrepancy
-  bool scrambles = false;               ///< points in 16 independent sets, whose spread tells the error
+  std::uint32_t light_points = 1;  ///< points on the extent asked for one by one; 1: its centre
+  bool shade_each_point = false;   ///< light from each point, not from the centre
+  bool random_points = false;      ///< points from a seeded generator, not low-discrepancy
+  bool scrambles = false;          ///< points in 16 independent sets, whose spread tells the error
 };
 
 /// A way to find the visibility of one light. An instance serves one light of one render; the core
@@ -77,7 +82,14 @@ class Technique {
 struct Diagnostic {
   std::string name;
   std::string meaning;
+  bool of_uncertainty = false;  ///< reads the scrambles' sums: drawn only where those are known
 };
+
+struct TechniqueDescription;
+
+/// The diagnostic picture of that name, or null for an empty one. Throws bad_value for a name that
+/// the technique does not have, telling those that it has.
+const Diagnostic* find_diagnostic(const TechniqueDescription& technique, const std::string& name);
 
 /// Everything the rest of the program knows of a technique. Built by `describe_<folder>()`.
 struct TechniqueDescription {

@@ -36,6 +36,9 @@ Cost CostReport::summary() const {
   Cost cost;
   cost.median_ms = quantile(frame_times_, 0.5);
   cost.p95_ms = quantile(frame_times_, 0.95);
+  if (cost.median_ms > 0.0)
+    cost.spread =
+        0.5 * (quantile(frame_times_, 0.75) - quantile(frame_times_, 0.25)) / cost.median_ms;
   cost.frames = static_cast<std::uint32_t>(frame_times_.size());
   cost.wall_median_ms = quantile(wall_times_, 0.5);
   for (const Pass& pass : passes_) {

@@ -24,33 +24,34 @@ std::uint32_t batch_count(std::size_t points) {
 LightPass::LightPass(const FrameSetup& setup, const Light& light)
     : setup_(setup),
       light_(world_light(light, setup.scene.origin())),
-      input_{setup.scene.scene(),
-             light,
-             setup.camera,
-             setup.parameters,
-             setup.width,
-             setup.height,
-             setup.request.light_samples,
-             setup.request.seed},
+      input_(technique_input(setup.request, light, setup.camera, setup.parameters)),
       technique_(setup.request.technique->create()) {
   technique_->require(input_, needs_);
   sets_ = setup_.side * setup_.side;
-  if (needs_.light_points > 1) {
-    const auto make = [&](std::uint32_t per_pixel, std::uint32_t least) {
-      const std::uint32_t per_set = std::max(least, per_pixel / sets_);
-      const bool divides = per_set % Uncertainty::scrambles == 0;
-      return light_points(light_, per_set, sets_, setup_.request.seed, needs_.random_points,
-                          needs_.scrambles && divides ? Uncertainty::scrambles : 1);
-    };
-    points_ = make(needs_.light_points, 1);
-    few_points_ = make(few_per_pixel, few_per_sample);
-    if (few_points_.size() > points_.size() || needs_.random_points) few_points_ = points_;
-    has_scrambles_ = needs_.scrambles && points_.size() / sets_ % Uncertainty::scrambles == 0;
-  } else {
-    const glm::dvec3 center =
-        light.kind == LightKind::directional ? -light_.direction : light_.position;
-    points_.assign(sets_, glm::vec4(center, 0.0));
+  const std::uint32_t in_set = std::max(1u, needs_.light_points / sets_);
+  has_scrambles_ =
+      needs_.light_points > 1 && needs_.scrambles && in_set % Uncertainty::scrambles == 0;
+}
+
+void LightPass::choose_points(PointRange round) {
+  if (needs_.light_points != setup_.request.light_samples) round = {0, needs_.light_points};
+  if (round == round_) return;
+  round_ = round;
+  if (needs_.light_points <= 1) {
+    const bool directional = light_.kind == LightKind::directional;
+    points_.assign(sets_, glm::vec4(directional ? -light_.direction : light_.position, 0.0));
+    return;
   }
+  const auto make = [&](std::uint32_t all, PointRange part) {
+    return light_points(
+        light_, all, sets_, setup_.request.seed, needs_.random_points,
+        needs_.scrambles && all % Uncertainty::scrambles == 0 ? Uncertainty::scrambles : 1, part);
+  };
+  const std::uint32_t all = std::max(1u, needs_.light_points / sets_);
+  const PointRange part{round.first / sets_, std::max(1u, round.count / sets_)};
+  points_ = make(all, part);
+  const std::uint32_t few = std::max(few_per_sample, few_per_pixel / sets_);
+  few_points_ = few >= part.count || needs_.random_points ? points_ : make(few, {0, few});
 }
 
 /// A batch of each set's points. Places without a point repeat one.
@@ -240,7 +241,7 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
       SampleWork work;
       work.set = set;
       if (list == nullptr) {
-        dispatch_all(commands, setup_.width, setup_.height, setup_.side, work);
+        dispatch_all(commands, setup_.width(), setup_.height(), setup_.side, work);
         continue;
       }
       for (const SampleList::Range& range : list->ranges)

@@ -4,6 +4,7 @@
 
 #include "renderer/frame/prepare_context.h"
 #include "renderer/frame/uncertainty.h"
+#include "renderer/frame/window.h"
 #include "renderer/render.h"
 
 namespace penumbra {
@@ -15,10 +16,12 @@ struct FrameSetup {
   const GpuScene& scene;
   const Camera& camera;
   CameraMatrices matrices;
-  std::uint32_t side = 1;   ///< samples along a pixel's side
-  std::uint32_t width = 0;  ///< samples of the frame
-  std::uint32_t height = 0;
+  std::uint32_t side = 1;    ///< samples along a pixel's side
+  Window window;             ///< what of the picture is drawn; `matrices` are its own
   std::string declarations;  ///< GLSL of the parameters
+
+  std::uint32_t width() const { return window.width * side; }  ///< samples of the frame
+  std::uint32_t height() const { return window.height * side; }
 };
 
 /// One light of a render: its technique's instance and everything that is drawn for it.
@@ -46,6 +49,9 @@ class LightPass {
     std::uint32_t frame_index;
     std::vector<std::string>& notes;
   };
+  /// Chooses the points that draw() goes through, of those that a pixel has; a light that has no
+  /// more than one point, or another number than the picture, goes through all its own each time.
+  void choose_points(PointRange round);
   /// Prepares and shades all batches of the light points. `after_batch` is called with the share
   /// done.
   void draw(const Frame& frame, const std::function<void(double)>& after_batch);
@@ -76,7 +82,8 @@ class LightPass {
   TechniqueInput input_;
   Requirements needs_;
   std::unique_ptr<Technique> technique_;
-  std::vector<glm::vec4> points_;      ///< all points, set after set
+  PointRange round_;                   ///< of the points of a pixel
+  std::vector<glm::vec4> points_;      ///< its points, set after set
   std::vector<glm::vec4> few_points_;  ///< for samples that nothing hides the light from
   bool has_scrambles_ = false;
   std::uint32_t sets_ = 1;  ///< samples of a pixel, each with its own points

@@ -85,27 +85,14 @@ std::uint32_t spread(std::uint32_t x) {  // 16 bits to the even places
 /// Offset from the centre along (right, up, direction) for a point of the unit cube; metres, or
 /// tangents of the angle when directional.
 glm::dvec3 extent_offset(const Light& light, const glm::dvec3& u) {
-  const bool angular = light.kind == LightKind::directional;
-  const auto length = [&](double x) { return angular ? std::tan(glm::radians(x)) : x; };
-  switch (light.extent.kind) {
-    case ExtentKind::none:
-      return glm::dvec3(0.0);
-    case ExtentKind::disc:
-      return glm::dvec3(length(light.extent.radius) * disc(u.x, u.y), 0.0);
-    case ExtentKind::rectangle:
-      return {length(0.5 * light.extent.size.x) * (2.0 * u.x - 1.0),
-              length(0.5 * light.extent.size.y) * (2.0 * u.y - 1.0), 0.0};
-    case ExtentKind::sphere: {
-      // Seen from far away the ball is a disc; near, its depth matters.
-      if (angular) return glm::dvec3(length(light.extent.radius) * disc(u.x, u.y), 0.0);
-      const double z = 2.0 * u.y - 1.0;
-      const double ring = std::sqrt(std::max(0.0, 1.0 - z * z));
-      const double phi = 2.0 * glm::pi<double>() * u.x;
-      return light.extent.radius * std::cbrt(u.z) *
-             glm::dvec3(ring * std::cos(phi), ring * std::sin(phi), z);
-    }
-  }
-  return glm::dvec3(0.0);
+  const glm::dvec3 half = extent_half_size(light);
+  if (light.extent.kind == ExtentKind::rectangle)
+    return half * glm::dvec3(2.0 * u.x - 1.0, 2.0 * u.y - 1.0, 0.0);
+  if (half.z == 0.0) return half.x * glm::dvec3(disc(u.x, u.y), 0.0);
+  const double z = 2.0 * u.y - 1.0;
+  const double ring = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double phi = 2.0 * glm::pi<double>() * u.x;
+  return half.x * std::cbrt(u.z) * glm::dvec3(ring * std::cos(phi), ring * std::sin(phi), z);
 }
 
 }  // namespace
@@ -122,17 +109,26 @@ WorldLight world_light(const Light& light, const glm::dvec3& origin) {
 }
 
 glm::dvec3 extent_half_size(const Light& light) {
+  const bool directional = light.kind == LightKind::directional;
+  const auto length = [&](double x) { return directional ? std::tan(glm::radians(x)) : x; };
+  const double radius = length(light.extent.radius);
   switch (light.extent.kind) {
     case ExtentKind::sphere:
-      return glm::dvec3(light.extent.radius);
+      // Seen from far away the ball is a disc.
+      return {radius, radius, directional ? 0.0 : radius};
     case ExtentKind::disc:
-      return {light.extent.radius, light.extent.radius, 0.0};
+      return {radius, radius, 0.0};
     case ExtentKind::rectangle:
-      return {0.5 * light.extent.size.x, 0.5 * light.extent.size.y, 0.0};
+      return {length(0.5 * light.extent.size.x), length(0.5 * light.extent.size.y), 0.0};
     case ExtentKind::none:
       break;
   }
   return glm::dvec3(0.0);
+}
+
+double extent_radius(const Light& light) {
+  const glm::dvec3 half = extent_half_size(light);
+  return light.extent.kind == ExtentKind::rectangle ? glm::length(half) : half.x;
 }
 
 shader::LightData light_data(const WorldLight& world, float points, float weight) {
@@ -162,8 +158,11 @@ class PointSource {
   PointSource(std::uint64_t seed, bool random) : seed_(seed), random_(random), generator_(seed) {
     for (int d = 0; d < 3; ++d) numbers_[static_cast<std::size_t>(d)] = direction_numbers(d);
   }
+  /// Random points are taken in rising order of their indices.
   glm::dvec3 point(std::uint32_t index) {
     glm::dvec3 u(0.5);
+    if (random_) generator_.discard(3ull * (index - next_));
+    next_ = index + 1;
     for (int d = 0; d < 3; ++d) {
       const auto k = static_cast<std::size_t>(d);
       u[d] = random_ ? (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53
@@ -176,6 +175,7 @@ class PointSource {
   std::uint64_t seed_;
   bool random_;
   std::mt19937_64 generator_;
+  std::uint32_t next_ = 0;
   std::array<std::array<std::uint32_t, 32>, 3> numbers_;
 };
 
@@ -191,15 +191,18 @@ std::uint32_t morton_code(const glm::dvec3& u) {
 
 std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
                                     std::uint32_t sets, std::uint64_t seed, bool random,
-                                    std::uint32_t scrambles) {
+                                    std::uint32_t scrambles, std::optional<PointRange> part) {
   const bool directional = light.kind == LightKind::directional;
-  const std::uint32_t each = count / scrambles;
+  const PointRange wanted = part.value_or(PointRange{0, count});
+  const std::uint32_t all = count / scrambles;
+  const std::uint32_t each = wanted.count / scrambles;
   std::vector<glm::vec4> points(std::size_t{each} * scrambles * sets);
   const bool independent = random || (scrambles > 1 && count * sets >= least_independent);
   for (std::uint32_t scramble = 0; scramble < scrambles; ++scramble) {
     PointSource source(independent && scrambles > 1 ? mix(seed ^ mix(scramble)) : seed, random);
     for (std::uint32_t set = 0; set < sets; ++set) {
-      const std::uint32_t first = independent ? set * each : set * count + scramble * each;
+      const std::uint32_t start = independent ? set * all : set * count + scramble * all;
+      const std::uint32_t first = start + wanted.first / scrambles;
       std::vector<std::pair<std::uint32_t, glm::dvec3>> ordered;
       for (std::uint32_t i = 0; i < each; ++i) {
         const glm::dvec3 u = source.point(first + i);

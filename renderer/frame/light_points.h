@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "renderer/scene/scene.h"
@@ -34,13 +35,24 @@ shader::LightData light_data(const WorldLight& light, float points, float weight
 /// scrambled independently where a pixel has least_independent points or more, so that their spread
 /// tells the error. Fewer points would lose too much by that: they stay one sequence, of which the
 /// parts are consecutive pieces, and the spread tells an upper estimate.
+/// A `part` of the points of each set may be asked for alone; it begins and ends at multiples of
+/// `scrambles`.
 inline constexpr std::uint32_t least_independent = 256;
+struct PointRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  friend bool operator==(const PointRange&, const PointRange&) = default;
+};
 std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
                                     std::uint32_t sets, std::uint64_t seed, bool random,
-                                    std::uint32_t scrambles = 1);
+                                    std::uint32_t scrambles = 1,
+                                    std::optional<PointRange> part = {});
 
 /// Corners of a box around the extent in the light's own axes: half sizes along right, up,
-/// direction.
+/// direction; metres, or tangents of the angle for a directional light.
 glm::dvec3 extent_half_size(const Light& light);
+
+/// Radius of the sphere around the extent's centre that holds all of it, likewise.
+double extent_radius(const Light& light);
 
 }  // namespace penumbra

@@ -1,22 +1,8 @@
 #include "renderer/frame/prepare_context.h"
 
-namespace penumbra {
+#include "renderer/scene/convex_clip.h"
 
-bool may_touch(const glm::mat4& clip_from_world, const glm::vec3& low, const glm::vec3& high) {
-  int outside[4] = {0, 0, 0, 0};
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                          (corner & 4) != 0 ? high.z : low.z);
-    const glm::vec4 clip = clip_from_world * glm::vec4(point, 1.0f);
-    outside[0] += clip.x < -clip.w;
-    outside[1] += clip.x > clip.w;
-    outside[2] += clip.y < -clip.w;
-    outside[3] += clip.y > clip.w;
-  }
-  for (const int count : outside)
-    if (count == 8) return false;
-  return true;
-}
+namespace penumbra {
 
 void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
                                   const vulkan::Bindings& bindings,
@@ -36,8 +22,9 @@ void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgra
   vkCmdBindIndexBuffer(commands.handle(), scene.index_buffer().handle(), 0, VK_INDEX_TYPE_UINT32);
 
   const auto& ranges = scene.ranges();
+  const auto sides = side_planes(glm::dmat4(clip_from_world));
   const auto drawn = [&](const DrawRange& range) {
-    return range.casts_shadow && may_touch(clip_from_world, range.low, range.high);
+    return range.casts_shadow && may_touch(range.box(), sides);
   };
   for (std::size_t i = 0; i < ranges.size();) {
     const DrawRange& first = ranges[i];

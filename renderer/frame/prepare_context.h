@@ -35,8 +35,8 @@ class PrepareContext {
   vulkan::ConstantArena& constants;  ///< of this batch
   vulkan::Recorder& recorder;
   const vulkan::Bindings&
-      frame_bindings;                 ///< FrameBlock, LightBlock, LightPointBlock, ParameterBlock,
-                                      ///< geometry_position, geometry_words, MaterialBlock, FaultBlock
+      frame_bindings;  ///< FrameBlock, LightBlock, LightPointBlock, ParameterBlock,
+                       ///< geometry_position, geometry_words, MaterialBlock, FaultBlock
   const std::string& declarations;    ///< GLSL of the parameters, for preambles of own programs
   std::span<const glm::vec4> points;  ///< light points of this batch: points_per_batch places for
                                       ///< each sample of a pixel, points_in_batch of them in use
@@ -57,8 +57,5 @@ class PrepareContext {
   void draw_casters(vulkan::Commands& commands, const CasterProgram& program,
                     const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
 };
-
-/// False only if the box lies wholly outside one of the side planes x = +-w, y = +-w.
-bool may_touch(const glm::mat4& clip_from_world, const glm::vec3& low, const glm::vec3& high);
 
 }  // namespace penumbra

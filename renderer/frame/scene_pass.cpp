@@ -1,6 +1,6 @@
 #include "renderer/frame/scene_pass.h"
 
-#include "renderer/frame/prepare_context.h"
+#include "renderer/scene/convex_clip.h"
 
 namespace penumbra {
 
@@ -71,8 +71,9 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   vulkan::Bindings bindings = frame_bindings;
 
   const auto& ranges = scene.ranges();
+  const auto sides = side_planes(glm::dmat4(clip_from_world));
   const auto visible = [&](const DrawRange& range) {
-    return range.visible && may_touch(clip_from_world, range.low, range.high);
+    return range.visible && may_touch(range.box(), sides);
   };
   for (std::size_t i = 0; i < ranges.size();) {
     const DrawRange& first = ranges[i];

@@ -51,6 +51,16 @@ glm::dmat4 clip_from_view_orthographic(double width, double height, double near_
   return clip;
 }
 
+std::array<glm::dvec3, 4> near_corners(const CameraMatrices& camera) {
+  constexpr std::array<glm::dvec2, 4> around{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  std::array<glm::dvec3, 4> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec4 corner = camera.world_from_clip * glm::dvec4(around[i], 1.0, 1.0);
+    corners[i] = glm::dvec3(corner) / corner.w;
+  }
+  return corners;
+}
+
 CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,
                                double scene_radius) {
   CameraMatrices matrices;

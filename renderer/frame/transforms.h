@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 
 #include "renderer/scene/scene.h"
@@ -28,6 +29,9 @@ struct CameraMatrices {
   glm::dvec3 position{0.0};   ///< world, moved by -origin
   glm::dvec3 direction{0.0};  ///< unit
 };
+
+/// Corners of the rectangle that the picture shows of the near plane, in a round.
+std::array<glm::dvec3, 4> near_corners(const CameraMatrices& camera);
 
 /// `scene_radius` bounds the depth of orthographic cameras, metres from the camera's target.
 CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,

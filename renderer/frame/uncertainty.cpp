@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "renderer/frame/read_back.h"
+#include "renderer/frame/host_copy.h"
 
 namespace penumbra {
 namespace {
@@ -39,8 +39,14 @@ void Uncertainty::clear_sums(vulkan::Commands& commands) const {
   vkCmdClearColorImage(commands.handle(), sums_.handle(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &all);
 }
 
-void Uncertainty::begin_frame() {
+void Uncertainty::restart() {
   deviations_.assign(std::size_t{width_} * height_, Deviations{});
+  points_ = 0.0f;
+}
+
+void Uncertainty::begin_round(std::uint32_t points) {
+  round_points_ = static_cast<float>(points);
+  points_ += round_points_;
 }
 
 void Uncertainty::add_light(vulkan::Device& device, const vulkan::Image& light_sum) {
@@ -66,7 +72,8 @@ void Uncertainty::add_light(vulkan::Device& device, const vulkan::Image& light_s
       Deviations& deviations = deviations_[std::size_t{y} * width_ + x];
       for (std::uint32_t c = 0; c < 3; ++c)
         for (std::uint32_t k = 0; k < scrambles; ++k)
-          deviations[c][k] += mean[c] * (static_cast<float>(scrambles) * seen[k] / total - 1.0f);
+          deviations[c][k] +=
+              round_points_ * mean[c] * (static_cast<float>(scrambles) * seen[k] / total - 1.0f);
     }
 }
 
@@ -76,8 +83,8 @@ ImageF Uncertainty::standard_error(const ImageF& linear, float exposure, bool en
   for (std::size_t p = 0; p < deviations_.size(); ++p) {
     std::array<float, 3> slopes;
     for (std::size_t c = 0; c < 3; ++c)
-      slopes[c] =
-          weights[c] * exposure * encoding_slope(linear.pixels[p * linear.channels + c], encodes);
+      slopes[c] = weights[c] * exposure / points_ *
+                  encoding_slope(linear.pixels[p * linear.channels + c], encodes);
     double squares = 0.0;
     for (std::uint32_t k = 0; k < scrambles; ++k) {
       double deviation = 0.0;

@@ -26,7 +26,10 @@ class Uncertainty {
   const vulkan::Image& sums() const { return sums_; }
   void clear_sums(vulkan::Commands& commands) const;
 
-  void begin_frame();
+  /// Forgets what was added.
+  void restart();
+  /// Says that what is added next was drawn with so many points of a pixel.
+  void begin_round(std::uint32_t points);
   /// Reads the sums of a light that was drawn; `light_sum` holds its radiance by sample.
   void add_light(vulkan::Device& device, const vulkan::Image& light_sum);
 
@@ -34,13 +37,22 @@ class Uncertainty {
   /// first order, by pixel. `linear` is the picture before encoding, with `exposure` applied.
   ImageF standard_error(const ImageF& linear, float exposure, bool encodes) const;
 
+  /// What was added so far, for `archive`'s operator() to read or write.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(deviations_);
+    archive(points_);
+  }
+
  private:
   /// By colour, of every scramble: what it saw more than the mean of all.
   using Deviations = std::array<std::array<float, scrambles>, 3>;
 
   std::uint32_t width_, height_, side_;
   vulkan::Image sums_;
-  std::vector<Deviations> deviations_;
+  std::vector<Deviations> deviations_;  ///< sums over rounds, times each round's points
+  float round_points_ = 1.0f;
+  float points_ = 0.0f;  ///< of all rounds
 };
 
 /// Root of the mean square: of standard errors, what they add to rms_y.

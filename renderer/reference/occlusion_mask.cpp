@@ -24,10 +24,7 @@ struct Box {
 /// Box around the whole extent: positions, or directions of any length.
 Box extent_box(const WorldLight& light) {
   const bool directional = light.kind == LightKind::directional;
-  glm::dvec3 half = extent_half_size(*light.source);
-  if (directional) half = glm::tan(glm::radians(half));
-  // Seen from far away a sphere is a disc.
-  if (directional) half.z = 0.0;
+  const glm::dvec3 half = extent_half_size(*light.source);
   const glm::dvec3 reach = glm::abs(light.right) * half.x + glm::abs(light.up) * half.y +
                            glm::abs(light.direction) * half.z;
   const glm::dvec3 middle = directional ? -light.direction : light.position;
@@ -67,7 +64,7 @@ shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   const float diagonal = glm::length(context.scene.high() - context.scene.low());
   data.box_low = glm::vec4(batch.low, directional ? 0.0 : 1.0);
   data.box_high = glm::vec4(batch.high, receiver_offset * diagonal);
-  data.whole_low = glm::vec4(whole.low, glm::length(extent_half_size(*context.light.source)));
+  data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
   data.whole_high = glm::vec4(whole.high, 0.0);
   data.unused.x = context.points_in_batch < batch_size ? ~0u << context.points_in_batch : 0u;
   return data;

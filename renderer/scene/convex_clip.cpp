@@ -33,6 +33,16 @@ void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
   }
 }
 
+std::array<HalfSpace, 4> side_planes(const glm::dmat4& clip_from_world) {
+  const glm::dmat4 rows = glm::transpose(clip_from_world);
+  return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1]};
+}
+
+HalfSpace near_plane(const glm::dmat4& clip_from_world) {
+  const glm::dmat4 rows = glm::transpose(clip_from_world);
+  return rows[3] - rows[2];
+}
+
 bool may_touch(const Bounds& box, std::span<const HalfSpace> sides) {
   for (const HalfSpace& side : sides) {
     const glm::dvec3 innermost(side.x > 0.0 ? box.high.x : box.low.x,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/glm.hpp>
 #include <span>
@@ -19,6 +20,12 @@ std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfS
 /// with corners of the half-spaces' own body that lie within the box, these span their common part.
 void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
                            const std::function<void(const glm::dvec3&)>& visit);
+
+/// The half-spaces x >= -w, x <= w, y >= -w, y <= w of a clip matrix, in front of its eye.
+std::array<HalfSpace, 4> side_planes(const glm::dmat4& clip_from_world);
+
+/// The half-space z <= w: beyond the near plane, where depth is reversed.
+HalfSpace near_plane(const glm::dmat4& clip_from_world);
 
 /// False only if the box lies wholly outside one of the half-spaces.
 bool may_touch(const Bounds& box, std::span<const HalfSpace> sides);

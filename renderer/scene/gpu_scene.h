@@ -21,6 +21,7 @@ struct DrawRange {
   std::uint32_t instance = 0;
   glm::vec3 low{0.0f};  ///< box, world
   glm::vec3 high{0.0f};
+  Bounds box() const { return {low, high}; }
   bool visible = true;       ///< as the plan has it
   bool casts_shadow = true;  ///< as the plan has it
   bool double_sided = false;
@@ -36,14 +37,15 @@ class GpuScene {
   GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
            std::vector<InstanceUse> uses, std::vector<bool> textures);
 
+  /// Of a vertex: its position, and its normal, texture coordinates and colour.
+  static constexpr std::uint64_t vertex_bytes = 12 + 24;
+
   const Scene& scene() const { return *scene_; }
   /// Whether this is what such a plan needs, no more and no less.
   bool serves(const std::shared_ptr<const Scene>& scene, const std::vector<InstanceUse>& uses,
               const std::vector<bool>& textures) const {
     return scene_ == scene && uses_ == uses && needed_textures_ == textures;
   }
-  /// What lies on the device, by name.
-  const std::vector<ResourceCost>& memory() const { return ledger_.entries; }
   glm::dvec3 origin() const { return origin_; }
   glm::vec3 to_world(const glm::dvec3& scene_point) const {
     return glm::vec3(scene_point - origin_);

@@ -7,6 +7,7 @@
 #include "renderer/frame/light_points.h"
 #include "renderer/frame/transforms.h"
 #include "renderer/scene/convex_clip.h"
+#include "renderer/scene/gpu_scene.h"
 
 namespace penumbra {
 namespace {
@@ -26,26 +27,13 @@ HalfSpace half_space(const glm::dvec3& inwards, const glm::dvec3& through) {
   return {inwards, -glm::dot(inwards, through)};
 }
 
-View view_of(const Camera& camera, double aspect) {
-  const glm::dvec3 forward = glm::normalize(camera.target - camera.position);
-  const glm::dvec3 up = across(forward, camera.up);
-  const glm::dvec3 right = glm::cross(forward, up);
-  const glm::dvec3 near_center = camera.position + camera.near_plane * forward;
-  const bool perspective = camera.projection == Projection::perspective;
-  const double tangent = std::tan(0.5 * glm::radians(camera.vertical_fov));
-  const double half_height =
-      perspective ? camera.near_plane * tangent : 0.5 * camera.orthographic_height;
+View view_of(const CameraMatrices& camera) {
   View view;
-  view.sides.push_back(half_space(forward, near_center));
-  for (const double sign : {-1.0, 1.0}) {
-    const glm::dvec3 edge_x = near_center + sign * half_height * aspect * right;
-    const glm::dvec3 edge_y = near_center + sign * half_height * up;
-    view.sides.push_back(
-        half_space((perspective ? tangent * aspect : 0.0) * forward - sign * right, edge_x));
-    view.sides.push_back(half_space((perspective ? tangent : 0.0) * forward - sign * up, edge_y));
-    for (const double other : {-1.0, 1.0})
-      view.corners.push_back(edge_x + other * half_height * up);
-  }
+  const auto sides = side_planes(camera.clip_from_world);
+  view.sides.assign(sides.begin(), sides.end());
+  view.sides.push_back(near_plane(camera.clip_from_world));
+  const auto corners = near_corners(camera);
+  view.corners.assign(corners.begin(), corners.end());
   return view;
 }
 
@@ -64,9 +52,7 @@ class LightReach {
  public:
   explicit LightReach(const Light& light) : light_(light) {
     direction_ = glm::normalize(light.direction);
-    glm::dvec3 half = extent_half_size(light);
-    if (light.kind == LightKind::directional) half = glm::tan(glm::radians(half));
-    radius_ = glm::length(half);
+    radius_ = extent_radius(light);
   }
 
   bool shines() const {
@@ -137,8 +123,8 @@ class LightReach {
 };
 
 std::uint64_t geometry_bytes(const Mesh& mesh) {
-  constexpr std::uint64_t vertex = 12 + 24;  // position; normal, texture coordinates, colour
-  return mesh.positions.size() * vertex + mesh.indices.size() * sizeof(std::uint32_t);
+  return mesh.positions.size() * GpuScene::vertex_bytes +
+         mesh.indices.size() * sizeof(std::uint32_t);
 }
 
 std::uint64_t texture_bytes(const Texture& texture) {
@@ -151,13 +137,10 @@ class Planner {
           const std::vector<Bounds>& boxes)
       : request_(request), scene_(*request.scene), boxes_(boxes) {
     camera_ = &scene_.cameras[find_camera(scene_, request.camera)];
-    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(request.supersampling)));
     for (const Light& light : scene_.lights) {
       Requirements needs;
-      request.technique->create()->require(
-          {scene_, light, *camera_, parameters, request.width * side, request.height * side,
-           request.light_samples, request.seed},
-          needs);
+      request.technique->create()->require(technique_input(request, light, *camera_, parameters),
+                                           needs);
       plan_.needs.push_back(needs);
     }
   }
@@ -176,7 +159,9 @@ class Planner {
 
  private:
   void find_visible() {
-    const View view = view_of(*camera_, static_cast<double>(request_.width) / request_.height);
+    // How deep an orthographic camera's volume reaches plays no part: its far end is not looked at.
+    const View view = view_of(camera_matrices(
+        *camera_, glm::dvec3(0.0), static_cast<double>(request_.width) / request_.height, 1.0));
     for (const Bounds& box : boxes_)
       seen_.push_back(may_touch(box, view.sides) ? common_part(box, view.sides, view.corners)
                                                  : Bounds{});
@@ -301,12 +286,8 @@ class Planner {
 
 std::vector<Bounds> instance_boxes(const Scene& scene) {
   std::vector<Bounds> boxes;
-  for (const Instance& instance : scene.instances) {
-    Bounds box;
-    for (const glm::vec3& position : scene.meshes.at(instance.mesh).positions)
-      box.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0)));
-    boxes.push_back(box);
-  }
+  for (const Instance& instance : scene.instances)
+    boxes.push_back(instance_bounds(scene, instance));
   Bounds all;
   for (const Bounds& box : boxes) all.add(box);
   if (all.empty()) return boxes;

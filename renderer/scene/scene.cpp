@@ -194,11 +194,16 @@ void validate_names(const std::vector<T>& list, const char* kind) {
 
 }  // namespace
 
+Bounds instance_bounds(const Scene& scene, const Instance& instance) {
+  Bounds bounds;
+  for (const glm::vec3& position : scene.meshes.at(instance.mesh).positions)
+    bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0)));
+  return bounds;
+}
+
 Bounds world_bounds(const Scene& scene) {
   Bounds bounds;
-  for (const Instance& instance : scene.instances)
-    for (const glm::vec3& position : scene.meshes.at(instance.mesh).positions)
-      bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0)));
+  for (const Instance& instance : scene.instances) bounds.add(instance_bounds(scene, instance));
   return bounds;
 }
 

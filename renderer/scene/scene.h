@@ -79,12 +79,12 @@ struct Instance {
 enum class LightKind { spot, directional, point };
 enum class ExtentKind { none, sphere, disc, rectangle };
 
-/// What makes a light cast penumbrae. For directional lights sizes are degrees of angle as seen from
-/// the scene (the sun: disc, 0.53), for the others metres.
+/// What makes a light cast penumbrae. For directional lights sizes are degrees of angle as seen
+/// from the scene (the sun: disc, 0.53), for the others metres.
 struct LightExtent {
   ExtentKind kind = ExtentKind::none;
-  double radius = 0.0;     ///< sphere, disc. Directional: half the angular diameter, degrees
-  glm::dvec2 size{0.0};    ///< rectangle: full width (along `right`) and height. Directional: degrees
+  double radius = 0.0;   ///< sphere, disc. Directional: half the angular diameter, degrees
+  glm::dvec2 size{0.0};  ///< rectangle: full width (along `right`) and height. Directional: degrees
 };
 
 enum class Attenuation { none, inverse_square };
@@ -92,7 +92,7 @@ enum class Attenuation { none, inverse_square };
 struct Light {
   std::string name;
   LightKind kind = LightKind::spot;
-  glm::dvec3 position{0.0};            ///< centre of the extent; unused when directional
+  glm::dvec3 position{0.0};              ///< centre of the extent; unused when directional
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< from the light into the scene, unit
   glm::dvec3 up{0.0, 0.0, 1.0};          ///< orients a rectangle; any vector not along direction
   glm::vec3 color{1.0f};                 ///< linear
@@ -112,7 +112,7 @@ struct Camera {
   glm::dvec3 target{0.0};
   glm::dvec3 up{0.0, 1.0, 0.0};
   Projection projection = Projection::perspective;
-  double vertical_fov = 45.0;       ///< degrees, perspective
+  double vertical_fov = 45.0;        ///< degrees, perspective
   double orthographic_height = 2.0;  ///< metres, orthographic
   double near_plane = 0.1;           ///< metres; the far plane is at infinity
 };
@@ -149,14 +149,17 @@ struct Scene {
   std::vector<Camera> cameras;  ///< at least one; the first is the default
   std::vector<PlanarReceiver> receivers;
   std::vector<ShadowPlane> shadow_planes;
-  glm::vec3 ambient{0.08f};              ///< linear, multiplies the base colour
-  glm::vec3 background_low{0.5f};        ///< linear, at the horizon and below
-  glm::vec3 background_high{0.25f};      ///< linear, straight up
-  float exposure = 1.0f;                 ///< multiplies linear light before encoding
-  std::vector<std::string> notes;        ///< what was assumed or repaired on import
+  glm::vec3 ambient{0.08f};          ///< linear, multiplies the base colour
+  glm::vec3 background_low{0.5f};    ///< linear, at the horizon and below
+  glm::vec3 background_high{0.25f};  ///< linear, straight up
+  float exposure = 1.0f;             ///< multiplies linear light before encoding
+  std::vector<std::string> notes;    ///< what was assumed or repaired on import
 };
 
-/// Box around all instances, from transformed vertices.
+/// Box around an instance, from transformed vertices.
+Bounds instance_bounds(const Scene& scene, const Instance& instance);
+
+/// Box around all instances.
 Bounds world_bounds(const Scene& scene);
 
 /// Index of the named camera, 0 for an empty name. Throws not_found naming the cameras there are.

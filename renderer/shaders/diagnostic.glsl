@@ -23,5 +23,5 @@ void main() {
   query.light_distance = incoming.distance;
   query.pixel = gl_FragCoord.xy;
   query.point = position.w == 0.0 ? -1 : 0;  // -1: background
-  out_color = DRAW_DIAGNOSTIC(query, gl_FragCoord.xy / frame.size.xy);
+  out_color = DRAW_DIAGNOSTIC(query, (gl_FragCoord.xy + frame.window.xy) / frame.window.zw);
 }

@@ -1,21 +1,34 @@
-// Averages the samples of a pixel in linear light and encodes once.
+// Averages the samples of a pixel in linear light and encodes once; or, FROM_LINEAR, encodes what was
+// averaged before.
 #include "renderer/shaders/faults.glsl"
 #include "renderer/shaders/frame.glsl"
 
+#ifdef FROM_LINEAR
+uniform sampler2D linear_picture;
+#else
 uniform sampler2D radiance;
+#endif
 
 layout(location = 0) out vec4 out_encoded;
 #ifdef WITH_LINEAR
 layout(location = 1) out vec4 out_linear;
 #endif
 
-void main() {
+vec3 mean_color() {
+#ifdef FROM_LINEAR
+  return texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+#else
   int side = int(frame.size.z);
   ivec2 first = ivec2(gl_FragCoord.xy) * side;
   vec3 sum = vec3(0.0);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) sum += texelFetch(radiance, first + ivec2(x, y), 0).rgb;
-  vec3 color = frame.size.w * sum / float(side * side);
+  return frame.size.w * sum / float(side * side);
+#endif
+}
+
+void main() {
+  vec3 color = mean_color();
 #ifdef WITH_LINEAR
   out_linear = vec4(color, 1.0);
 #endif

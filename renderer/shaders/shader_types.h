@@ -36,6 +36,7 @@ struct FrameData {
   vec4 background_low;    // rgb linear, horizon
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
+  vec4 window;            // samples: xy of the frame's first in the whole picture, zw of all of that
   uvec4 options;          // x times that colours are decoded, y frame index, z seed, w encodes
 };
 
@@ -44,7 +45,8 @@ struct LightData {
   vec4 direction;  // xyz from the light into the scene, w range in m (0 unlimited)
   vec4 color;      // rgb colour times intensity, w 1 for inverse-square attenuation
   vec4 cone;       // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight of a point
-  vec4 extent;     // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half height
+  vec4 extent;     // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half height;
+                   // m, or tangents of the angle when directional
   vec4 right;      // xyz unit, along a rectangle's width
   vec4 up;         // xyz unit, along its height
 };
@@ -80,7 +82,8 @@ struct MapData {
 struct ShaftData {
   vec4 box_low;     // box of the batch; w 1 for positions, 0 for directions
   vec4 box_high;    // w distance that receivers are moved along their normal, m
-  vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre, m
+  vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre,
+                    // m, or a tangent for directions
   vec4 whole_high;
   uvec4 unused;     // x bits of points that the batch does not have
 };

@@ -33,6 +33,7 @@ float mean_of_bilinear(MapPoint point, int size) {
 /// Angle of 0 to 2 pi by which this pixel's taps are turned: neighbours differ as much as they can
 /// (interleaved gradient noise, Jimenez 2014).
 float tap_rotation(vec2 pixel) {
+  pixel += frame.window.xy;
   return 2.0 * pi * fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));
 }
 

@@ -52,9 +52,7 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
 /// them would else begin behind the light.
 void extend_range(const shader::MapFace& face, const glm::dvec3& low, const glm::dvec3& high,
                   double& near, double& far) {
-  const glm::dmat4 rows = glm::transpose(glm::dmat4(face.clip_from_world));
-  const HalfSpace sides[4] = {rows[3] - rows[0], rows[3] + rows[0], rows[3] - rows[1],
-                              rows[3] + rows[1]};
+  const auto sides = side_planes(glm::dmat4(face.clip_from_world));
   const glm::dvec3 origin(face.origin);
   if (contains({low, high}, origin)) near = std::min(near, 0.0);
   visit_clipped_corners({low, high}, sides, [&](const glm::dvec3& point) {

@@ -8,8 +8,7 @@ const int extent_rectangle = 3;
 
 // Half sizes along right and up: m, or tangents of the angle for a directional light.
 vec2 light_half_size() {
-  vec2 half_size = int(light.extent.x) == extent_rectangle ? light.extent.yz : light.extent.yy;
-  return is_directional() ? tan(radians(half_size)) : half_size;
+  return int(light.extent.x) == extent_rectangle ? light.extent.yz : light.extent.yy;
 }
 
 // Radius of the sphere around the whole light, likewise.

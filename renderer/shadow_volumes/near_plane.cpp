@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/scene/convex_clip.h"
+
 namespace penumbra::shadow_volumes {
 
 NearPlane::NearPlane(const PrepareContext& context)
@@ -9,20 +11,13 @@ NearPlane::NearPlane(const PrepareContext& context)
   const bool directional = context.light.kind == LightKind::directional;
   light_ = glm::dvec4(directional ? -context.light.direction : context.light.position,
                       directional ? 0.0 : 1.0);
-  const glm::dmat4 rows = glm::transpose(clip_from_world_);
-  plane_ = rows[3] - rows[2];  // reversed depth: z = w at the near plane
+  plane_ = penumbra::near_plane(clip_from_world_);
 
   // Planes through the light and the sides of the near rectangle, and the near plane itself, all
   // turned so that the pyramid is inside.
-  std::array<glm::dvec3, 4> corners;
+  const std::array<glm::dvec3, 4> corners = near_corners(context.camera);
   glm::dvec3 middle(0.0);
-  constexpr std::array<glm::dvec2, 4> around{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const glm::dvec4 corner =
-        context.camera.world_from_clip * glm::dvec4(around[i].x, around[i].y, 1.0, 1.0);
-    corners[i] = glm::dvec3(corner) / corner.w;
-    middle += 0.25 * corners[i];
-  }
+  for (const glm::dvec3& corner : corners) middle += 0.25 * corner;
   const auto add = [&](glm::dvec4 plane, const glm::dvec4& inside) {
     if (glm::dot(plane, inside) < 0.0) plane = -plane;
     const double length = glm::length(glm::dvec3(plane));

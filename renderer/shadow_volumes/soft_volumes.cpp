@@ -43,20 +43,13 @@ vulkan::Buffer upload_table(PrepareContext& context, std::uint32_t size) {
 
 }  // namespace
 
-double light_radius(const WorldLight& light) {
-  glm::dvec3 half = extent_half_size(*light.source);
-  if (light.kind == LightKind::directional) half = glm::tan(glm::radians(half));
-  return light.source->extent.kind == ExtentKind::rectangle ? glm::length(glm::dvec2(half))
-                                                            : half.x;
-}
-
 void SoftVolumes::draw(PrepareContext& context, const SoftVolumeOptions& options) {
   const glm::dvec3 half = extent_half_size(*context.light.source);
   const bool soft = half.x > 0.0 && half.y > 0.0;
   VolumeOptions hard;
   hard.clamp = options.clamp;
   hard.exact_sides = soft;
-  hard.light_radius = light_radius(context.light);
+  hard.light_radius = extent_radius(*context.light.source);
   volumes_.draw(context, hard);
   unused_ = &context.geometry.position;
   if (!soft) return;
@@ -101,7 +94,7 @@ void SoftVolumes::draw_wedges(PrepareContext& context, bool clamp) {
   bindings.buffer("CoverageBlock", table_.whole());
   VolumeDrawOptions wanted;
   wanted.clamp = clamp;
-  wanted.light_radius = light_radius(context.light);
+  wanted.light_radius = extent_radius(*context.light.source);
   const VolumeDraws draws = list_volume_draws(context, wanted);
   vulkan::RenderTargets targets;
   targets.width = context.geometry.width;

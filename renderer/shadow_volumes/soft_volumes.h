@@ -5,9 +5,6 @@
 
 namespace penumbra::shadow_volumes {
 
-/// Largest reach of a light from its centre: m, or the tangent of the angle when directional.
-double light_radius(const WorldLight& light);
-
 struct SoftVolumeOptions {
   VkFormat format = VK_FORMAT_R32_SFLOAT;  ///< one float: wedges add up in an image of it
   std::uint32_t table_size = 64;           ///< places along each axis of the coverage table

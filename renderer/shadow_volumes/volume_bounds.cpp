@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/scene/convex_clip.h"
+
 namespace penumbra::shadow_volumes {
 namespace {
 
@@ -27,28 +29,19 @@ VolumeBounds::VolumeBounds(const PrepareContext& context, double light_radius)
   const bool directional = light_.kind == LightKind::directional;
   const glm::dvec4 light(directional ? -light_.direction : light_.position,
                          directional ? 0.0 : 1.0);
-  // Rows of the clip matrix: x >= -w, x <= w, y >= -w, y <= w, and the near plane z <= w.
-  const glm::dmat4 rows = glm::transpose(context.camera.clip_from_world);
-  for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
-                                  rows[3] - rows[1], rows[3] - rows[2]})
+  const auto sides = side_planes(context.camera.clip_from_world);
+  std::vector<HalfSpace> view(sides.begin(), sides.end());
+  view.push_back(near_plane(context.camera.clip_from_world));
+  for (const HalfSpace& plane : view)
     if (glm::dot(plane, light) >= light_radius * glm::length(glm::dvec3(plane)))
       planes_.push_back(plane);
-  const glm::mat4 clip(context.camera.clip_from_world);
   for (const DrawRange& range : context.scene.ranges())
-    if (may_touch(clip, range.low, range.high)) {
-      receivers_.add(glm::dvec3(range.low));
-      receivers_.add(glm::dvec3(range.high));
-    }
+    if (may_touch(range.box(), sides)) receivers_.add(range.box());
 }
 
 bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const {
   if (receivers_.empty()) return false;
-  for (const glm::dvec4& plane : planes_) {
-    bool outside = true;
-    for (int corner = 0; corner < 8 && outside; ++corner)
-      outside = glm::dot(plane, glm::dvec4(corner_of(low, high, corner), 1.0)) < 0.0;
-    if (outside) return false;
-  }
+  if (!may_touch(Bounds{low, high}, planes_)) return false;
   if (light_.kind == LightKind::directional) return true;
   const glm::dvec3 center = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
   // What hides a point of the light from a receiver is no farther than its radius from what hides

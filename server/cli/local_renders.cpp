@@ -14,6 +14,10 @@ using nlohmann::json;
 constexpr std::uint64_t cache_bytes = std::uint64_t{2} << 30;
 constexpr double reference_part = 0.6;  ///< of the bar
 
+CheckpointFolder checkpoints() {
+  return {checkpoint_folder(cache_folder()), CheckpointFolder{}.every_s};
+}
+
 }  // namespace
 
 std::filesystem::path cache_folder() {
@@ -27,7 +31,9 @@ std::filesystem::path cache_folder() {
 LocalRenders::LocalRenders(const RequestContext& context, bool validation)
     : context_(context),
       renderer_(RendererOptions{context.device, validation}),
-      references_(cache_folder() / "references", cache_bytes) {}
+      references_(cache_folder() / "references", cache_bytes) {
+  sweep_checkpoints(checkpoint_folder(cache_folder()));
+}
 
 ReferencePictures LocalRenders::reference_for(const CanonicalRequest& request,
                                               const std::function<void(double)>& progress) {
@@ -39,8 +45,9 @@ ReferencePictures LocalRenders::reference_for(const CanonicalRequest& request,
     const auto visibility = references_.read(reference.id, want::visibility);
     if (image && visibility) return {reference.id, *image, *visibility, record.at("noise_rms_y")};
   }
-  TaskResult drawn =
-      run_task(renderer_, {reference, {want::image, want::visibility, want::noise}, {}}, progress);
+  TaskResult drawn = run_task(
+      renderer_, {reference, {want::image, want::visibility, want::noise}, {}, checkpoints()},
+      progress);
   references_.put(reference.id, {{"device", device}, {"noise_rms_y", drawn.noise_rms_y}},
                   drawn.artefacts);
   return {reference.id, std::move(drawn.artefacts[want::image]),
@@ -50,7 +57,7 @@ ReferencePictures LocalRenders::reference_for(const CanonicalRequest& request,
 LocalRenders::Outcome LocalRenders::render(const CanonicalRequest& request,
                                            const std::set<std::string>& wants,
                                            const std::function<void(double)>& progress) {
-  Task task{request, wants, {}};
+  Task task{request, wants, {}, checkpoints()};
   double from = 0.0;
   if (needs_reference(wants)) {
     from = reference_part;

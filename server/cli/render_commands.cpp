@@ -94,8 +94,9 @@ std::string cost_text(const json& cost) {
   const json& frame = cost.at("frame_ms");
   std::ostringstream text;
   text << "frame        " << number(frame.at("median"), 3) << " ms median, "
-       << number(frame.at("p95"), 3) << " ms p95 over " << frame.at("frames").get<int>()
-       << " frames\n"
+       << number(frame.at("p95"), 3) << " ms p95, spread "
+       << number(100.0 * frame.at("spread").get<double>(), 1) << "%, over "
+       << frame.at("frames").get<int>() << " frames\n"
        << "create       " << number(cost.at("create_ms"), 1) << " ms\n"
        << "memory       " << cost.at("memory").at("over_none_bytes").get<std::uint64_t>()
        << " bytes over none\n";

@@ -43,6 +43,9 @@ void RequestOptions::add_to(CLI::App& command) {
   key("light-samples", "light_samples",
       with_default("Rays per pixel and light, of techniques that take many",
                    defaults.light_samples));
+  key("error-bound", "error_bound",
+      "Of the reference: stop once its own error is no more than this, levels of 0..255 "
+      "[no bound]");
   key("seed", "seed", with_default("Of everything random", defaults.seed));
   command.add_option("--data", data, "Folder of imported scenes");
   command.add_option("--device", device, "Vulkan device: part of its name, or its index");

@@ -50,6 +50,8 @@ void add_worker(CLI::App& app, Session& session) {
   worker->add_option("--device", options->device, "Vulkan device: part of its name, or its index");
   worker->add_option("--memory-limit", options->memory_limit,
                      "Address space that drawing may add, bytes; 0: the machine's memory");
+  worker->add_option("--checkpoint-s", options->checkpoint_s,
+                     "Least time between two checkpoints of a picture, seconds");
   worker->add_flag("--validation", options->validation, "Turn Vulkan's validation layer on");
   worker->callback(
       [options, &session] { session.action = [options] { return run_worker(*options); }; });

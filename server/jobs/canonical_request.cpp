@@ -75,6 +75,16 @@ class Reader {
     return number;
   }
 
+  double number(const std::string& key, double fallback, double low, double high) {
+    const json* value = find(key);
+    if (!value || value->is_null()) return fallback;
+    const double number = value->is_number() ? value->get<double>() : low - 1.0;
+    if (!(number >= low && number <= high))
+      throw bad_value(key, key + " must be a number from " + json(low).dump() + " to " +
+                               json(high).dump() + ", not " + shown(*value));
+    return number;
+  }
+
   bool boolean(const std::string& key, bool fallback) {
     const json* value = find(key);
     if (!value || value->is_null()) return fallback;
@@ -132,17 +142,6 @@ std::uint64_t supersampling_of(Reader& reader, std::uint64_t fallback) {
   return value;
 }
 
-void check_diagnostic(const TechniqueDescription& technique, const std::string& name) {
-  if (name.empty()) return;
-  std::string known;
-  for (const Diagnostic& diagnostic : technique.diagnostics) {
-    if (diagnostic.name == name) return;
-    known += (known.empty() ? "" : ", ") + diagnostic.name;
-  }
-  throw bad_value("diagnostic", technique.id + " has no diagnostic picture \"" + name +
-                                    "\"; it has " + (known.empty() ? "none" : known));
-}
-
 /// Overrides of lights that the scene has and accepts; nothing where nothing is replaced.
 json checked_lights(const Scene& scene, json lights) {
   for (auto entry = lights.begin(); entry != lights.end();) {
@@ -185,6 +184,8 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   out["supersampling"] = supersampling_of(reader, defaults.supersampling);
   out["light_samples"] =
       reader.integer("light_samples", defaults.light_samples, 1, RenderLimits::max_light_samples);
+  out["error_bound"] =
+      reader.number("error_bound", defaults.error_bound, 0.0, RenderLimits::max_error_bound);
   const json lights = reader.object("lights");
   out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
   out["diagnostic"] = reader.text("diagnostic", "");
@@ -196,7 +197,7 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   canonical.technique = techniques::resolve(technique, techniques::values_from_json(parameters));
   out["technique"] = canonical.technique.technique->id;
   out["parameters"] = techniques::values_to_json(canonical.technique.parameters);
-  check_diagnostic(*canonical.technique.technique, out["diagnostic"]);
+  find_diagnostic(*canonical.technique.technique, out["diagnostic"]);  // throws where unknown
   if (canonical.measure && out["diagnostic"] != "")
     throw bad_value("diagnostic", "a diagnostic picture has no error to measure");
 
@@ -244,6 +245,7 @@ RenderRequest to_render_request(const CanonicalRequest& canonical) {
   request.height = from.at("height");
   request.supersampling = from.at("supersampling");
   request.light_samples = from.at("light_samples");
+  request.error_bound = from.at("error_bound");
   request.seed = from.at("seed");
   request.diagnostic = from.at("diagnostic");
   return request;

@@ -18,8 +18,8 @@ struct Message {
   Blobs blobs;
 };
 
-/// Largest message that is read; pictures of 8192 x 8192 with four float channels pass.
-inline constexpr std::size_t max_message_bytes = std::size_t{2} << 30;
+/// Largest message that is read; the largest picture with four float channels passes.
+inline constexpr std::size_t max_message_bytes = std::size_t{5} << 30;
 
 /// Writes all of it. Throws std::system_error where the other end is gone.
 void write_message(int descriptor, const Message& message);

@@ -35,6 +35,8 @@ WorkerCommand command_of(const RenderServiceOptions& options) {
   command.arguments.insert(command.arguments.end(), {"--data", options.data.string()});
   if (!options.device.empty())
     command.arguments.insert(command.arguments.end(), {"--device", options.device});
+  command.arguments.insert(command.arguments.end(),
+                           {"--checkpoint-s", std::to_string(options.checkpoint_s)});
   if (options.validation) command.arguments.emplace_back("--validation");
   command.driver_cache = options.data / "driver";
   std::filesystem::create_directories(command.driver_cache);
@@ -49,6 +51,7 @@ QueuedRenderService::QueuedRenderService(const RenderServiceOptions& options)
       store_(options.data / "artefacts", options.cache_bytes),
       crew_(command_of(options)) {
   // Writing to a worker that died is an error to handle, and so is a disk that is full.
+  sweep_checkpoints(checkpoint_folder(options_.data));
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   for (unsigned i = 0; i < std::max(1u, options.workers); ++i)

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/checkpoint.h"
+
 namespace penumbra::server {
 
 /// Where a render stands.
@@ -69,7 +71,8 @@ struct RenderServiceOptions {
   std::string device;          ///< as RendererOptions::device
   unsigned workers = 1;
   unsigned queue_limit = 256;
-  double deadline_s = 300.0;  ///< per render
+  double deadline_s = 300.0;                         ///< per render
+  double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
   std::uint64_t cache_bytes = 4ull << 30;
   bool validation = false;
   /// Starts a worker; default is this very program with the argument `worker`.

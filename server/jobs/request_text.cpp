@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::string_view light_prefix = "light.";
 
-enum class Kind { text, integer, boolean };
+enum class Kind { text, integer, number, boolean };
 
 /// Keys of a request that text can set; every other name is a parameter of the technique.
 const std::map<std::string, Kind>& request_keys() {
@@ -28,6 +28,7 @@ const std::map<std::string, Kind>& request_keys() {
                                                 {"height", Kind::integer},
                                                 {"supersampling", Kind::integer},
                                                 {"light_samples", Kind::integer},
+                                                {"error_bound", Kind::number},
                                                 {"seed", Kind::integer},
                                                 {"frames", Kind::integer},
                                                 {"measure", Kind::boolean}};
@@ -114,6 +115,10 @@ json request_from_text(const std::vector<std::pair<std::string, std::string>>& e
       request["parameters"][name] = value;
     } else if (key->second == Kind::integer) {
       request[name] = integer_from(name, value);
+    } else if (key->second == Kind::number) {
+      const auto number = number_from(value);
+      if (!number) throw bad_value(name, name + " must be a number, not \"" + value + "\"");
+      request[name] = *number;
     } else if (key->second == Kind::boolean) {
       request[name] = boolean_from(name, value);
     } else {

@@ -76,7 +76,11 @@ json cost_to_json(const Cost& cost) {
     resources.push_back({{"name", resource.name}, {"bytes", resource.bytes}});
     bytes += resource.bytes;
   }
-  return {{"frame_ms", {{"median", cost.median_ms}, {"p95", cost.p95_ms}, {"frames", cost.frames}}},
+  return {{"frame_ms",
+           {{"median", cost.median_ms},
+            {"p95", cost.p95_ms},
+            {"spread", cost.spread},
+            {"frames", cost.frames}}},
           {"wall_median_ms", cost.wall_median_ms},
           {"create_ms", cost.create_ms},
           {"passes", passes},
@@ -93,7 +97,7 @@ json measure_cost(Renderer& renderer, const Task& task, const RenderResult& firs
   }
   RenderRequest request = to_render_request(task.request);
   request.frames = frames_to_time(renderer, task, first.cost, notes);
-  return cost_to_json(renderer.render(request, progress).cost);
+  return cost_to_json(renderer.render(request, {progress, {}, {}}).cost);
 }
 
 /// SSIM needs a window of 11 x 11; smaller pictures have none.
@@ -176,17 +180,18 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   if (wanted(want::cost)) {
     // Nothing else may draw while frames are timed, and the first may be the only one.
     const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
-    drawn = renderer.render(request, parts.next());
+    drawn = renderer.render(request, {parts.next(), {}, {}});
     result.cost = measure_cost(renderer, task, drawn, parts.next(), result.notes);
     if (!alone.held()) result.notes.push_back("measured while another render shared the device");
   } else {
     const DeviceLock drawing(DeviceLock::Mode::draw, draw_patience_s);
-    drawn = renderer.render(request, parts.next());
+    Checkpoint checkpoint(task.checkpoints, task.request.id);
+    drawn = renderer.render(
+        request,
+        {parts.next(), [&](const auto& state) { checkpoint.offer(state); }, checkpoint.load()});
+    checkpoint.remove();
   }
   result.notes.insert(result.notes.begin(), drawn.notes.begin(), drawn.notes.end());
-  if (drawn.non_finite_pixels > 0)
-    result.notes.push_back(std::to_string(drawn.non_finite_pixels) +
-                           " pixels are not finite and shown in magenta");
 
   const Image8& shown = request.diagnostic.empty() ? drawn.picture : drawn.diagnostic;
   if (wanted(want::image)) result.artefacts[want::image] = scenes::encode_png(shown);

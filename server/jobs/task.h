@@ -8,6 +8,7 @@
 
 #include "renderer/render.h"
 #include "server/jobs/canonical_request.h"
+#include "server/jobs/checkpoint.h"
 #include "server/jobs/message.h"
 
 namespace penumbra::server {
@@ -42,6 +43,7 @@ struct Task {
   CanonicalRequest request;
   std::set<std::string> wants;
   ReferencePictures reference;  ///< read where needs_reference(wants)
+  CheckpointFolder checkpoints;
 };
 
 struct TaskResult {

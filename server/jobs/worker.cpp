@@ -63,6 +63,7 @@ Task task_from(Message& message, const WorkerOptions& options) {
   if (task.request.request.at("scene_hash") != scene_hash)
     throw unsupported("the scene has changed since this picture was asked for: ask for it anew",
                       "scene");
+  task.checkpoints = {checkpoint_folder(options.data), options.checkpoint_s};
   task.wants = body.at("wants").get<std::set<std::string>>();
   if (const auto reference = message.body.find("reference"); reference != message.body.end()) {
     task.reference.id = reference->at("id");

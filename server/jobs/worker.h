@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "server/jobs/checkpoint.h"
+
 namespace penumbra::server {
 
 struct WorkerOptions {
@@ -13,6 +15,7 @@ struct WorkerOptions {
   /// Address space that drawing may add once the device is open, bytes; 0: as much as the machine
   /// has memory. Drivers map far more than they use, hence counted from there.
   std::uint64_t memory_limit = 0;
+  double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
 };
 
 /// The child process that owns a Vulkan device. Protocol (message.h) on standard input and output:

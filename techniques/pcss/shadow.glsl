@@ -18,7 +18,6 @@ ExtentOnMap extent_on_map(int face_index) {
   vec2 half_size = light.extent.yz;
   bool square = int(light.extent.x) == 3;  // rectangle
   if (!square) half_size = light.extent.yy;
-  if (int(light.position.w) == light_kind_directional) half_size = tan(radians(half_size));
   // Round extents look alike from everywhere; a rectangle lies along its own axes.
   vec3 along_right = square ? light.right.xyz : normalize(face.right.xyz);
   vec3 along_up = square ? light.up.xyz : normalize(face.up.xyz);

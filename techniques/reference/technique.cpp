@@ -57,7 +57,8 @@ TechniqueDescription describe_reference() {
       {"uncertainty",
        "Standard error of the first light's brightness, over 16 scrambles of its points: black "
        "below 1/1024 of a level of 255 in linear light, white from one level on, logarithmic "
-       "between."}};
+       "between.",
+       true}};
   description.shader = "techniques/reference/shadow.glsl";
   description.create = [] { return std::make_unique<Reference>(); };
   return description;

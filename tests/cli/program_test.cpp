@@ -54,7 +54,7 @@ TEST_F(ProgramTest, answers_wrong_usage_with_state_2_and_the_argument_at_fault) 
       {"", "subcommand"},
       {"paint", "paint"},
       {"render", "SCENE"},
-      {"render boxes none --width 0", "width must be an integer from 1 to 8192"},
+      {"render boxes none --width 0", "width must be an integer from 1 to 16384"},
       {"render boxes none --width 1e3", "width"},
       {"render boxes none --height 100000", "height"},
       {"render boxes none --supersampling 2", "1, 4, 16"},

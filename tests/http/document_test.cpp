@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "renderer/render.h"
 #include "server/http/routes.h"
 #include "tests/http/running_server.h"
 
@@ -55,6 +56,20 @@ TEST(TheDocument, ResolvesAllItsReferences) {
       if (inner.is_structured()) visit(inner);
   };
   visit(api_document());
+}
+
+TEST(TheDocument, GivesTheRangesThatTheRendererHas) {
+  const json& keys = api_document().at("/components/schemas/RenderRequest/properties"_json_pointer);
+  const RenderRequest defaults;
+  for (const char* key : {"width", "height"}) {
+    EXPECT_EQ(keys.at(key).at("maximum"), RenderLimits::max_size);
+    EXPECT_EQ(keys.at(key).at("default"), defaults.width);
+  }
+  EXPECT_EQ(keys.at("supersampling").at("enum"), json(RenderLimits::supersampling));
+  EXPECT_EQ(keys.at("light_samples").at("maximum"), RenderLimits::max_light_samples);
+  EXPECT_EQ(keys.at("light_samples").at("default"), defaults.light_samples);
+  EXPECT_EQ(keys.at("error_bound").at("maximum"), RenderLimits::max_error_bound);
+  EXPECT_EQ(keys.at("error_bound").at("default"), defaults.error_bound);
 }
 
 TEST(Yaml, KeepsTheTypesOfItsScalars) {

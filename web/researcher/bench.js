@@ -49,16 +49,16 @@ function passes(record) {
 }
 
 class Bench {
-  constructor(scenes, techniques, presets, signal) {
+  constructor(scenes, techniques, presets, limits, signal) {
     Object.assign(this, { techniques, presets, signal });
     this.scene = select("scene", scenes.map(({ id, title }) => [id, title || id]));
     this.technique = select("technique", [
       ...techniques.map(({ id, title }) => [id, title || id]),
       ...presets.filter(({ id }) => !techniques.some((technique) => technique.id === id))
         .map(({ id, title }) => [id, `${title || id} (preset)`])]);
-    this.size = h("input", { type: "number", id: "size", min: "1", max: "8192", step: "1", value: "600", required: true });
-    this.supersampling = select("supersampling", [["1", "1"], ["4", "4"], ["16", "16"]]);
-    this.light_samples = h("input", { type: "number", id: "light-samples", min: "1", max: "65536", step: "1" });
+    this.size = h("input", { type: "number", id: "size", min: limits.width.minimum, max: limits.width.maximum, step: "1", value: limits.width.default, required: true });
+    this.supersampling = select("supersampling", limits.supersampling.enum.map((count) => [String(count), String(count)]));
+    this.light_samples = h("input", { type: "number", id: "light-samples", min: limits.light_samples.minimum, max: limits.light_samples.maximum, step: "1" });
     this.parameters = h("div", {});
     this.technique.addEventListener("change", () => this.draw_parameters());
     this.go = h("button", { type: "submit", class: "primary" }, "Render");
@@ -146,6 +146,7 @@ class Bench {
 }
 
 export async function bench_view(signal) {
-  const [{ scenes }, { techniques, presets }] = await Promise.all([get("/api/v1/scenes"), get("/api/v1/techniques")]);
-  return new Bench(scenes, techniques, presets, signal).element;
+  const [{ scenes }, { techniques, presets }, { components }] =
+    await Promise.all([get("/api/v1/scenes"), get("/api/v1/techniques"), get("/openapi.json")]);
+  return new Bench(scenes, techniques, presets, components.schemas.RenderRequest.properties, signal).element;
 }

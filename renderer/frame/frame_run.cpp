@@ -1,0 +1,290 @@
+#include "renderer/frame/frame_run.h"
+
+#include <algorithm>
+
+#include "renderer/error.h"
+#include "renderer/frame/common_parameters.h"
+#include "renderer/frame/host_copy.h"
+#include "renderer/frame/parameter_glsl.h"
+#include "renderer/frame/scene_pass.h"
+#include "renderer/reference/intersector.h"
+
+namespace penumbra {
+namespace {
+
+using vulkan::Sampling;
+
+FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
+                      const ParameterValues& parameters, const Plan& plan, const Window& window) {
+  return {request,
+          parameters,
+          state.upload(request.scene, plan),
+          request.scene->cameras[find_camera(*request.scene, request.camera)],
+          {},
+          samples_per_side(request.supersampling),
+          window,
+          parameter_declarations(request.technique->parameters, parameters)};
+}
+
+CameraMatrices whole_camera(const FrameSetup& setup) {
+  const glm::vec3 extent = setup.scene.high() - setup.scene.low();
+  return camera_matrices(setup.camera, setup.scene.origin(),
+                         static_cast<double>(setup.request.width) / setup.request.height,
+                         0.5 * static_cast<double>(glm::length(extent)));
+}
+
+std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup, const Plan& plan) {
+  std::vector<std::unique_ptr<LightPass>> lights;
+  for (std::size_t i = 0; i < plan.lights.size(); ++i)
+    lights.push_back(plan.lights[i]
+                         ? std::make_unique<LightPass>(setup, setup.request.scene->lights[i])
+                         : nullptr);
+  return lights;
+}
+
+/// Whether any light that is drawn requires it.
+template <class Needs>
+bool any(const std::vector<std::unique_ptr<LightPass>>& lights, const Needs& needs) {
+  return std::any_of(lights.begin(), lights.end(),
+                     [&](const auto& light) { return light && needs(light->needs()); });
+}
+
+bool has_many_points(const Requirements& needs) {
+  return needs.light_points > 1;
+}
+
+}  // namespace
+
+FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
+                   const ParameterValues& parameters, const Window& window, bool in_rounds)
+    : state_(state),
+      request_(request),
+      plan_(make_plan(request, parameters, state.boxes_of(request.scene))),
+      setup_(make_setup(state, request, parameters, plan_, window)),
+      camera_(whole_camera(setup_)),
+      lights_(make_lights(setup_, plan_)),
+      targets_(state.device, window, setup_.side, wanted_targets(in_rounds)) {}
+
+FrameTargets::Wanted FrameRun::wanted_targets(bool in_rounds) const {
+  if (!request_.diagnostic.empty() && first_light() == lights_.size())
+    throw unsupported("no light reaches what the camera sees: there is nothing to show",
+                      "diagnostic");
+  check_uncertainty();
+  FrameTargets::Wanted wanted;
+  wanted.stencil = any(lights_, [](const Requirements& needs) { return needs.stencil; });
+  wanted.light_sums = any(lights_, has_many_points);
+  wanted.uncertainty =
+      (request_.uncertainty || request_.error_bound > 0.0 || draws_uncertainty()) &&
+      knows_uncertainty();
+  wanted.linear = request_.linear || wanted.uncertainty || in_rounds;
+  wanted.diagnostic = !request_.diagnostic.empty();
+  if (request_.visibility) wanted.visibility_layers = static_cast<std::uint32_t>(lights_.size());
+  return wanted;
+}
+
+bool FrameRun::draws_uncertainty() const {
+  const Diagnostic* diagnostic = find_diagnostic(*request_.technique, request_.diagnostic);
+  return diagnostic != nullptr && diagnostic->of_uncertainty;
+}
+
+bool FrameRun::knows_uncertainty() const {
+  return std::uint64_t{request_.width} * request_.height <= Uncertainty::max_pixels &&
+         std::all_of(lights_.begin(), lights_.end(),
+                     [](const auto& light) { return !light || light->tells_error(); });
+}
+
+void FrameRun::check_uncertainty() const {
+  const bool bounded = request_.error_bound > 0.0;
+  if ((!draws_uncertainty() && !bounded) || knows_uncertainty()) return;
+  // Techniques without scrambles say nothing of their error; a bound on it does not concern them.
+  if (!any(lights_, [](const Requirements& needs) { return needs.scrambles; })) return;
+  throw unsupported(
+      "the error of this picture is not known: that takes a multiple of 16 light "
+      "samples for each sample of a pixel, and no more than " +
+          std::to_string(Uncertainty::max_pixels) + " pixels",
+      bounded ? "error_bound" : "light_samples");
+}
+
+std::size_t FrameRun::first_light() const {
+  return static_cast<std::size_t>(std::find(plan_.lights.begin(), plan_.lights.end(), true) -
+                                  plan_.lights.begin());
+}
+
+vulkan::Bindings FrameRun::frame_bindings(std::uint32_t index) {
+  const Scene& scene = *request_.scene;
+  const CameraMatrices& m = setup_.matrices;
+  const auto side = static_cast<float>(setup_.side);
+  shader::FrameData frame{};
+  frame.clip_from_world = m.clip_from_world;
+  frame.world_from_clip = m.world_from_clip;
+  frame.camera_position =
+      glm::vec4(m.position, setup_.camera.projection == Projection::perspective ? 1.0 : 0.0);
+  frame.camera_direction = glm::vec4(m.direction, setup_.camera.near_plane);
+  frame.ambient = glm::vec4(scene.ambient, 0.0f);
+  frame.background_low = glm::vec4(scene.background_low, 0.0f);
+  frame.background_high = glm::vec4(scene.background_high, 0.0f);
+  frame.size = glm::vec4(setup_.width(), setup_.height(), setup_.side, scene.exposure);
+  frame.window =
+      side * glm::vec4(setup_.window.x, setup_.window.y, request_.width, request_.height);
+  const GammaTreatment gamma = gamma_treatment(setup_.parameters);
+  frame.options = {static_cast<std::uint32_t>(gamma.decodes), index,
+                   static_cast<std::uint32_t>(request_.seed), gamma.encodes ? 1u : 0u};
+  const auto words = parameter_block(request_.technique->parameters, setup_.parameters);
+  vulkan::Bindings bindings;
+  bindings.buffer("FrameBlock", state_.constants.push(frame));
+  bindings.buffer("ParameterBlock",
+                  state_.constants.push_array(std::span<const std::uint32_t>(words)));
+  bindings.buffer("MaterialBlock", setup_.scene.material_buffer().whole());
+  bindings.buffer("FaultBlock", state_.faults.whole());
+  bindings.texture("geometry_position", targets_.geometry.position, Sampling::nearest);
+  bindings.texture("geometry_words", targets_.geometry.words, Sampling::nearest);
+  return bindings;
+}
+
+void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
+                    bool count_statistics, const std::function<void(double)>& progress) {
+  setup_.window = window;
+  setup_.matrices = camera_of_window(camera_, window, request_.width, request_.height);
+  for (const auto& light : lights_)
+    if (light) light->choose_points(round);
+  state_.constants.reset();
+  std::memset(state_.faults.mapped(), 0, state_.faults.size());
+  const vulkan::Bindings bindings = frame_bindings(index);
+  if (uncertainty() != nullptr) uncertainty()->begin_round(round.count);
+  state_.recorder.begin(count_statistics);
+  state_.recorder.pass("geometry", [&](vulkan::Commands& commands) {
+    draw_geometry(commands, state_.pipelines, setup_.scene, targets_.geometry, bindings,
+                  glm::mat4(setup_.matrices.clip_from_world));
+  });
+  draw_lights(bindings, index, progress);
+  resolve(bindings, false);
+  state_.recorder.end();
+  if (fault_counts().unfinished_invocations > 0)
+    throw device_error("loops of " + std::to_string(fault_counts().unfinished_invocations) +
+                       " shader invocations ended before their work was done");
+}
+
+void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index,
+                           const std::function<void(double)>& progress) {
+  for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    if (!lights_[i]) continue;
+    LightPass& light = *lights_[i];
+    const LightPass::Frame frame{state_.device,
+                                 state_.pipelines,
+                                 state_.library,
+                                 state_.recorder,
+                                 state_.constants,
+                                 targets_.geometry,
+                                 request_.visibility ? &targets_.visibility_samples : nullptr,
+                                 &targets_.light_sums,
+                                 uncertainty(),
+                                 bindings,
+                                 index,
+                                 notes_};
+    light.draw(frame, [&](double share) {
+      if (has_many_points(light.needs()))
+        progress((i + share) / static_cast<double>(lights_.size()));
+    });
+    if (request_.visibility) resolve_visibility(bindings, i);
+    if (!request_.diagnostic.empty() && i == first_light())
+      light.draw_diagnostic(frame, request_.diagnostic, targets_.diagnostic);
+  }
+}
+
+void FrameRun::encode(const ImageF& linear) {
+  write_float(state_.device, targets_.linear, linear);
+  state_.constants.reset();
+  std::memset(state_.faults.mapped(), 0, state_.faults.size());
+  const vulkan::Bindings bindings = frame_bindings(0);
+  state_.recorder.begin(false);
+  resolve(bindings, true);
+  state_.recorder.end();
+}
+
+FaultCounts FrameRun::fault_counts() const {
+  FaultCounts counts;
+  std::memcpy(&counts, state_.faults.mapped(), sizeof(counts));
+  return counts;
+}
+
+std::vector<std::string> FrameRun::notes() const {
+  std::vector<std::string> notes = notes_;
+  std::sort(notes.begin(), notes.end());
+  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+  return notes;
+}
+
+void FrameRun::resolve(const vulkan::Bindings& bindings, bool from_linear) {
+  const Window& window = setup_.window;
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve.frag"}};
+  vulkan::GraphicsState state;
+  state.color_formats = {FrameTargets::picture_format};
+  vulkan::RenderTargets targets{
+      window.width, window.height, {{targets_.picture.slice(0), false, {}}}};
+  vulkan::Bindings all = bindings;
+  if (from_linear) {
+    source.preamble = "#define FROM_LINEAR\n";
+    all.texture("linear_picture", targets_.linear, Sampling::nearest);
+  } else {
+    all.texture("radiance", targets_.geometry.radiance, Sampling::nearest);
+    if (targets_.linear) {
+      source.preamble = "#define WITH_LINEAR\n";
+      state.color_formats.push_back(FrameTargets::linear_format);
+      targets.colors.push_back({targets_.linear.slice(0), false, {}});
+    }
+  }
+  const vulkan::Pipeline& pipeline = state_.pipelines.graphics(source, state);
+  state_.recorder.pass("resolve", [&](vulkan::Commands& commands) {
+    commands.begin_rendering(targets);
+    commands.bind(pipeline, all);
+    commands.full_screen_triangle();
+    commands.end_rendering();
+  });
+}
+
+void FrameRun::resolve_visibility(const vulkan::Bindings& bindings, std::uint32_t light) {
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve_visibility.frag"}};
+  vulkan::GraphicsState state;
+  state.color_formats = {FrameTargets::visibility_format};
+  vulkan::Bindings all = bindings;
+  all.texture("visibility_samples", targets_.visibility_samples, Sampling::nearest);
+  const vulkan::Pipeline& pipeline = state_.pipelines.graphics(source, state);
+  state_.recorder.pass("resolve visibility", [&](vulkan::Commands& commands) {
+    commands.begin_rendering({setup_.window.width,
+                              setup_.window.height,
+                              {{targets_.visibility.slice(light), false, {}}}});
+    commands.bind(pipeline, all);
+    commands.full_screen_triangle();
+    commands.end_rendering();
+  });
+}
+
+std::vector<ResourceCost> FrameRun::technique_memory() const {
+  vulkan::MemoryLedger memory;
+  for (const auto& light : lights_)
+    if (light)
+      for (const ResourceCost& resource : light->memory())
+        memory.add(resource.name, resource.bytes);
+  // What lights require together is there once, however many they are.
+  if (any(lights_, [](const Requirements& needs) { return needs.acceleration_structure; }))
+    for (const ResourceCost& part :
+         reference::Intersector::of(state_.device, setup_.scene).memory())
+      memory.add(part.name, part.bytes);
+  if (any(lights_, [](const Requirements& needs) { return needs.adjacency; }))
+    memory.add("adjacency", setup_.scene.adjacency(state_.device).indices.size());
+  const bool stencil = any(lights_, [](const Requirements& needs) { return needs.stencil; });
+  // A format with stencil may hold padding too: all that it takes over depth alone is the price.
+  const std::uint64_t depth_bytes = std::uint64_t{setup_.width()} * setup_.height() * sizeof(float);
+  for (const ResourceCost& target : targets_.ledger.entries) {
+    if (target.name == "light sums") memory.add(target.name, target.bytes);
+    if (stencil && target.name == "geometry depth and stencil" && target.bytes > depth_bytes)
+      memory.add("stencil", target.bytes - depth_bytes);
+  }
+  return memory.entries;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "renderer/frame/frame_targets.h"
+#include "renderer/frame/light_pass.h"
+#include "renderer/frame/renderer_state.h"
+
+namespace penumbra {
+
+/// As renderer/shaders/faults.glsl has it.
+struct FaultCounts {
+  std::uint32_t non_finite_pixels = 0;
+  std::uint32_t unfinished_invocations = 0;
+};
+
+/// The passes of one render, and what they draw into: a window of the picture at a time, with some
+/// of the lights' points at a time.
+class FrameRun {
+ public:
+  /// `window`: any of those that the picture is drawn in, since all are of one size. `in_rounds`:
+  /// rounds of light points are to be averaged, and read in linear light.
+  FrameRun(Renderer::State& state, const RenderRequest& request, const ParameterValues& parameters,
+           const Window& window, bool in_rounds);
+
+  /// Draws a window with these of a pixel's light points, frame `index`. `progress` gets the share
+  /// done of what takes long.
+  void draw(const Window& window, PointRange round, std::uint32_t index, bool count_statistics,
+            const std::function<void(double)>& progress);
+  /// Encodes a mean of rounds, RGBA in linear light with exposure, into the targets' picture.
+  void encode(const ImageF& linear);
+
+  const FrameTargets& targets() const { return targets_; }
+  Uncertainty* uncertainty() const { return targets_.uncertainty.get(); }
+  const std::vector<std::unique_ptr<LightPass>>& lights() const { return lights_; }
+  FaultCounts fault_counts() const;
+  std::vector<std::string> notes() const;  ///< sorted, each once
+  /// What the technique had of the device over what any picture has.
+  std::vector<ResourceCost> technique_memory() const;
+
+ private:
+  FrameTargets::Wanted wanted_targets(bool in_rounds) const;
+  bool draws_uncertainty() const;  ///< as a diagnostic picture
+  /// Whether the error of all lights is known, so that it can be told.
+  bool knows_uncertainty() const;
+  void check_uncertainty() const;
+  /// The first that reaches anything visible, or the number of lights.
+  std::size_t first_light() const;
+  vulkan::Bindings frame_bindings(std::uint32_t index);
+  void draw_lights(const vulkan::Bindings& bindings, std::uint32_t index,
+                   const std::function<void(double)>& progress);
+  void resolve(const vulkan::Bindings& bindings, bool from_linear);
+  void resolve_visibility(const vulkan::Bindings& bindings, std::uint32_t light);
+
+  Renderer::State& state_;
+  const RenderRequest& request_;
+  Plan plan_;
+  FrameSetup setup_;
+  CameraMatrices camera_;                           ///< of the whole picture
+  std::vector<std::unique_ptr<LightPass>> lights_;  ///< null where the plan has left one out
+  FrameTargets targets_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "renderer/frame/geometry_buffer.h"
+#include "renderer/frame/uncertainty.h"
+#include "renderer/frame/window.h"
+
+namespace penumbra {
+
+/// What a window of a picture is drawn into besides the geometry buffer.
+struct FrameTargets {
+  struct Wanted {
+    bool stencil = false;     ///< beside the geometry buffer's depth
+    bool light_sums = false;  ///< for lights of many points
+    bool uncertainty = false;
+    bool linear = false;  ///< the picture before it is encoded
+    bool diagnostic = false;
+    std::uint32_t visibility_layers = 0;  ///< one a light, or none
+  };
+
+  FrameTargets(vulkan::Device& device, const Window& window, std::uint32_t side,
+               const Wanted& wanted);
+
+  vulkan::MemoryLedger ledger;
+  GeometryBuffer geometry;
+  vulkan::Image picture;             ///< encoded, by pixel, and so is what has no other word here
+  vulkan::Image linear;              ///< with exposure, or none
+  vulkan::Image light_sums;          ///< radiance and visibility of the light at hand, by sample
+  vulkan::Image visibility_samples;  ///< of the light at hand
+  vulkan::Image visibility;          ///< a layer a light
+  vulkan::Image diagnostic;          ///< by sample
+  std::unique_ptr<Uncertainty> uncertainty;
+
+  static constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM;
+  static constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  static constexpr VkFormat visibility_format = VK_FORMAT_R32G32_SFLOAT;
+};
+
+}  // namespace penumbra
