@@ -80,8 +80,9 @@ Parameter clamp_parameter() {
   clamp.type = ParameterType::boolean;
   clamp.default_value = false;
   clamp.meaning =
-      "Culls casters that cannot shadow anything visible or lie in the shadow of another, and ends "
-      "volumes behind the last visible surface instead of at infinity.";
+      "Culls casters that cannot shadow anything visible and, where shadows are hard, those that lie "
+      "in the shadow of another, and ends volumes behind the last visible surface instead of at "
+      "infinity.";
   return clamp;
 }
 
