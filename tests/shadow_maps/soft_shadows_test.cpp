@@ -94,6 +94,32 @@ TEST(SoftShadows, light_behind_the_receivers_plane_does_not_count) {
               testing::Each(1.0f));
 }
 
+/// A sun of 20 x 20 degrees that shines `elevation` degrees over the horizon.
+Light wide_sun(double elevation) {
+  Light light = sun();
+  const double angle = glm::radians(elevation);
+  light.direction = {std::cos(angle), -std::sin(angle), 0};
+  light.extent.kind = ExtentKind::rectangle;
+  light.extent.size = {20.0, 20.0};
+  return light;
+}
+
+TEST(SoftShadows, of_a_sun_are_as_wide_as_its_angle_makes_them) {
+  Scene scene = edge_at(1.0);
+  scene.lights[0] = wide_sun(90.0);
+  const double expected = 2.0 * std::tan(glm::radians(10.0));
+  EXPECT_NEAR(penumbra_width(draw(scene, "pcss", {}, 100)), expected, 0.15 * expected);
+}
+
+TEST(SoftShadows, a_sun_on_the_horizon_shines_by_the_share_that_has_risen) {
+  Scene scene = half_risen_light();
+  scene.lights[0] = wide_sun(5.0);
+  const double half = std::tan(glm::radians(10.0));
+  const auto share = static_cast<float>((std::tan(glm::radians(5.0)) + half) / (2.0 * half));
+  EXPECT_THAT(draw(scene, "pcss").visibility.pixels,
+              testing::Each(testing::FloatNear(share, 0.02f)));
+}
+
 TEST(SoftShadows, where_nothing_blocks_nothing_is_filtered) {
   Scene scene = edge_at(1.0);
   scene.cameras[0].position.x = scene.cameras[0].target.x = 1.6;
