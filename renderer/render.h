@@ -37,6 +37,9 @@ struct PlanRules {
   bool surfaces = true;  ///< no surface that the camera cannot see
   bool casters = true;   ///< no caster that can shadow nothing visible
   bool textures = true;  ///< no texture that nothing drawn reads
+  /// Maps' depths from the nearest caster that matters to the farthest surface that is seen and lit,
+  /// not from end to end of the scene. Unlike the others it may change a picture, to the better.
+  bool depth_range = true;
 };
 
 /// One picture. The result is a pure function of this, the device and the version of the renderer.

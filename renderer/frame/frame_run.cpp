@@ -36,9 +36,9 @@ CameraMatrices whole_camera(const FrameSetup& setup) {
 std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup, const Plan& plan) {
   std::vector<std::unique_ptr<LightPass>> lights;
   for (std::size_t i = 0; i < plan.lights.size(); ++i)
-    lights.push_back(plan.lights[i]
-                         ? std::make_unique<LightPass>(setup, setup.request.scene->lights[i])
-                         : nullptr);
+    lights.push_back(plan.lights[i] ? std::make_unique<LightPass>(
+                                          setup, setup.request.scene->lights[i], plan.fits[i])
+                                    : nullptr);
   return lights;
 }
 

@@ -21,11 +21,12 @@ std::uint32_t batch_count(std::size_t points) {
 
 }  // namespace
 
-LightPass::LightPass(const FrameSetup& setup, const Light& light)
+LightPass::LightPass(const FrameSetup& setup, const Light& light, const LightFit& fit)
     : setup_(setup),
       light_(world_light(light, setup.scene.origin())),
       input_(technique_input(setup.request, light, setup.camera, setup.parameters)),
-      technique_(setup.request.technique->create()) {
+      technique_(setup.request.technique->create()),
+      fit_(fit) {
   technique_->require(input_, needs_);
   sets_ = setup_.side * setup_.side;
   const std::uint32_t in_set = std::max(1u, needs_.light_points / sets_);
@@ -92,6 +93,7 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
     PrepareContext context{input_,
                            setup_.scene,
                            light_,
+                           fit_,
                            setup_.matrices,
                            frame.geometry,
                            frame.device,

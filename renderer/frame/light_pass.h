@@ -27,8 +27,9 @@ struct FrameSetup {
 /// One light of a render: its technique's instance and everything that is drawn for it.
 class LightPass {
  public:
-  /// Creates the technique's instance and asks what it requires; throws `unsupported`.
-  LightPass(const FrameSetup& setup, const Light& light);
+  /// Creates the technique's instance and asks what it requires; throws `unsupported`. `fit`
+  /// outlives this.
+  LightPass(const FrameSetup& setup, const Light& light, const LightFit& fit);
 
   const Requirements& needs() const { return needs_; }
   /// Whether its error is known: it is exact, or its points come in scrambles.
@@ -82,6 +83,7 @@ class LightPass {
   TechniqueInput input_;
   Requirements needs_;
   std::unique_ptr<Technique> technique_;
+  const LightFit& fit_;
   PointRange round_;                   ///< of the points of a pixel
   std::vector<glm::vec4> points_;      ///< its points, set after set
   std::vector<glm::vec4> few_points_;  ///< for samples that nothing hides the light from

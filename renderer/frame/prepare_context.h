@@ -27,6 +27,7 @@ class PrepareContext {
   const TechniqueInput& input;
   const GpuScene& scene;
   const WorldLight& light;
+  const LightFit& fit;
   const CameraMatrices& camera;
   const GeometryBuffer& geometry;
   vulkan::Device& device;

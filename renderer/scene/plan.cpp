@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "renderer/frame/light_points.h"
@@ -100,6 +101,21 @@ class LightReach {
     return first <= last;
   }
 
+  /// Distances of a box's nearest and farthest point: along the light's axis where it has one, from
+  /// the light's own place or, directional, from the scene's origin; metres.
+  glm::dvec2 distances(const Bounds& box) const {
+    if (light_.kind == LightKind::point) {
+      const glm::dvec3 nearest = glm::clamp(light_.position, box.low, box.high);
+      const glm::dvec3 reach = glm::abs(box.center() - light_.position) + 0.5 * box.size();
+      return {glm::length(nearest - light_.position), glm::length(reach)};
+    }
+    const bool directional = light_.kind == LightKind::directional;
+    const glm::dvec3 from = directional ? glm::dvec3(0.0) : light_.position;
+    const double middle = glm::dot(box.center() - from, direction_);
+    const double half = 0.5 * glm::dot(box.size(), glm::abs(direction_));
+    return {directional ? middle - half : std::max(middle - half, 0.0), middle + half};
+  }
+
   /// Whether filters that mix neighbouring directions may read it.
   bool in_filtered_cone(const Bounds& caster) const {
     if (light_.kind != LightKind::spot) return true;
@@ -181,7 +197,9 @@ class Planner {
          lit.empty()
              ? (reach.shines() ? "reaches nothing that the camera sees" : "has no intensity")
              : "reaches " + std::to_string(lit.size()) + " of the visible instances");
+    plan_.fits.push_back(fit_of(reach, lit));
     if (!kept) return;
+    if (plan_.needs[index].casters == CasterUse::cone) explain_depth_range(light.name, reach);
     if (lit.size() * boxes_.size() > most_pairs) {
       Bounds all;
       for (const Bounds& box : lit) all.add(box);
@@ -190,6 +208,40 @@ class Planner {
     for (std::size_t i = 0; i < boxes_.size(); ++i)
       if (scene_.instances[i].casts_shadow && casts(reach, plan_.needs[index], boxes_[i], lit))
         plan_.instances[i].casts = true;
+  }
+
+  LightFit fit_of(const LightReach& reach, const std::vector<Bounds>& lit) const {
+    if (!request_.rules.depth_range) return {boxes_, boxes_};
+    LightFit fit;
+    fit.receivers = lit;
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+      if (scene_.instances[i].casts_shadow && reach.in_filtered_cone(boxes_[i]))
+        fit.casters.push_back(boxes_[i]);
+    return fit;
+  }
+
+  void explain_depth_range(const std::string& light, const LightReach& reach) {
+    const auto in_metres = [](double value) {
+      char text[32];
+      std::snprintf(text, sizeof(text), "%.4g", value);
+      return std::string(text);
+    };
+    glm::dvec2 fitted(infinity, -infinity);
+    glm::dvec2 scene = fitted;
+    for (const Bounds& box : plan_.fits.back().casters)
+      fitted.x = std::min(fitted.x, reach.distances(box).x);
+    for (const Bounds& box : plan_.fits.back().receivers) {
+      fitted.x = std::min(fitted.x, reach.distances(box).x);
+      fitted.y = std::max(fitted.y, reach.distances(box).y);
+    }
+    for (const Bounds& box : boxes_) {
+      scene.x = std::min(scene.x, reach.distances(box).x);
+      scene.y = std::max(scene.y, reach.distances(box).y);
+    }
+    if (fitted.y < fitted.x) return;  // nothing seen
+    line("depth range", light, true,
+         "what matters lies " + in_metres(fitted.x) + " to " + in_metres(fitted.y) +
+             " m along its axis, the scene " + in_metres(scene.x) + " to " + in_metres(scene.y));
   }
 
   bool casts(const LightReach& reach, const Requirements& needs, const Bounds& caster,

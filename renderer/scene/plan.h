@@ -17,6 +17,12 @@ struct InstanceUse {
   friend bool operator==(const InstanceUse&, const InstanceUse&) = default;
 };
 
+/// What maps of a light have to tell apart: boxes in the scene's coordinates.
+struct LightFit {
+  std::vector<Bounds> casters;    ///< what filters of its map may read
+  std::vector<Bounds> receivers;  ///< what the camera sees of what it reaches
+};
+
 /// A thing of the scene or of the technique, whether the render has it, and why.
 struct PlanLine {
   std::string rule;     ///< lights, surfaces, casters, textures, extent, stencil, ...
@@ -32,6 +38,7 @@ struct Plan {
   std::vector<InstanceUse> instances;
   std::vector<bool> lights;         ///< whether the light reaches anything visible
   std::vector<Requirements> needs;  ///< of the technique for each light
+  std::vector<LightFit> fits;       ///< for each light
   std::vector<bool> textures;       ///< whether any drawn surface or masked caster reads it
   std::vector<PlanLine> lines;
 };

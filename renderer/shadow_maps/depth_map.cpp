@@ -166,7 +166,7 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius, double border
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
   // Room at the borders, up to a quarter of the map.
   const double guard = std::min((border + 1.0) / size, 0.5 - 0.5 / widest_filtered_cone);
-  LightView view = fit_light_view(context.scene, context.light, size, guard);
+  LightView view = fit_light_view(context.scene, context.light, context.fit, size, guard);
   set_range(view, parameters);
   if (!image_) {
     vulkan::ImageDescription description;

@@ -50,12 +50,13 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
 
 /// Widens near..far by the part of a box between the face's side planes. A box that reaches past
 /// them would else begin behind the light.
-void extend_range(const shader::MapFace& face, const glm::dvec3& low, const glm::dvec3& high,
+void extend_range(const shader::MapFace& face, const Bounds& box, const glm::dvec3& scene_origin,
                   double& near, double& far) {
+  const Bounds world{box.low - scene_origin, box.high - scene_origin};
   const auto sides = side_planes(glm::dmat4(face.clip_from_world));
   const glm::dvec3 origin(face.origin);
-  if (contains({low, high}, origin)) near = std::min(near, 0.0);
-  visit_clipped_corners({low, high}, sides, [&](const glm::dvec3& point) {
+  if (contains(world, origin)) near = std::min(near, 0.0);
+  visit_clipped_corners(world, sides, [&](const glm::dvec3& point) {
     const double distance = glm::dot(point - origin, glm::dvec3(face.forward));
     near = std::min(near, distance);
     far = std::max(far, distance);
@@ -77,8 +78,8 @@ Bounds bounds_along(const GpuScene& scene, const Axes& axes) {
 
 }  // namespace
 
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::uint32_t map_size,
-                         double guard) {
+LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const LightFit& fit,
+                         std::uint32_t map_size, double guard) {
   LightView view;
   const double widen = 1.0 / (1.0 - 2.0 * guard);
   double near = std::numeric_limits<double>::infinity();
@@ -91,8 +92,6 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::ui
     const double half = std::max(0.5 * std::max(bounds.size().x, bounds.size().y), 1e-6) * widen;
     const glm::dvec3 origin = center.x * right + center.y * axes.up + bounds.low.z * axes.forward;
     view.faces.push_back(make_face(origin, axes, half, half, false, map_size));
-    near = 0.0;
-    far = bounds.size().z;
   } else {
     std::vector<Axes> axes{{light.direction, light.up}};
     double tangent = std::tan(glm::radians(light.source->outer_angle));
@@ -104,9 +103,13 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::ui
     const double half = tangent * widen;
     for (const Axes& face_axes : axes) {
       view.faces.push_back(make_face(light.position, face_axes, half, half, true, map_size));
-      for (const DrawRange& range : scene.ranges())
-        extend_range(view.faces.back(), glm::dvec3(range.low), glm::dvec3(range.high), near, far);
     }
+  }
+  // Casters tell where depth begins, and both: a surface is compared with what lies before it.
+  double unused = -near;
+  for (const shader::MapFace& face : view.faces) {
+    for (const Bounds& box : fit.casters) extend_range(face, box, scene.origin(), near, unused);
+    for (const Bounds& box : fit.receivers) extend_range(face, box, scene.origin(), near, far);
   }
   if (!(far > 0.0)) far = 1.0;  // nothing before the light
   // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.

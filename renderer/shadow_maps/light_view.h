@@ -16,10 +16,11 @@ struct LightView {
 };
 
 /// Fits the view to what the scene needs: a spot light's cone, the scene's box for a directional
-/// light; near and far enclose everything inside the side planes (van Sambeek 2007, 2.2.3). Casters
-/// before near are clamped to it when drawn with depth clamp. `guard` widens the map by this share
-/// of its width on each side, room for filter kernels.
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, std::uint32_t map_size,
-                         double guard);
+/// light; within the side planes from the nearest of `fit`'s boxes to its farthest receiver (van
+/// Sambeek 2007, 2.2.3). Casters before near are clamped to it when drawn with depth clamp, and so
+/// are those beyond far, which shadow nothing. `guard` widens the map by this share of its width on
+/// each side, room for filter kernels.
+LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const LightFit& fit,
+                         std::uint32_t map_size, double guard);
 
 }  // namespace penumbra::shadow_maps

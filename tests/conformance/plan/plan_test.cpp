@@ -7,6 +7,8 @@
 #include "renderer/error.h"
 #include "renderer/frame/light_points.h"
 #include "renderer/frame/transforms.h"
+#include "renderer/metrics/metrics.h"
+#include "scenes/library.h"
 #include "techniques/registry.h"
 #include "tests/conformance/plan/scattered.h"
 #include "tests/conformance/scenes.h"
@@ -214,6 +216,66 @@ TEST_F(PlanEdge, a_light_that_was_turned_away_or_off_is_dropped) {
   EXPECT_FALSE(plan_of(scene, "none").lights[0]);
   scene.lights[0].range = 4.5;
   EXPECT_TRUE(plan_of(scene, "none").lights[0]);
+}
+
+/// A box on a floor, and in the light's cone something far below, beside what the camera sees.
+Scene floor_above_a_distant_thing() {
+  Scene scene = test::box_on_ground();
+  test::add_box(scene, {3, -40000, -1}, {5, -39990, 1});
+  return scene;
+}
+
+double false_and_missing(const RenderResult& result, const RenderResult& truth) {
+  const auto error = metrics::visibility_error(result.visibility, truth.visibility, result.judged);
+  return error.false_shadow + error.missing_shadow;
+}
+
+TEST(DepthRange, ends_at_the_farthest_surface_that_is_seen_and_lit) {
+  RenderRequest request = request_of(floor_above_a_distant_thing(), "shadow-map");
+  request.rules.surfaces = request.rules.casters = false;
+  const Plan plan = plan_of(request);
+  Bounds receivers;
+  for (const Bounds& box : plan.fits[0].receivers) receivers.add(box);
+  EXPECT_GT(receivers.low.y, -1.0);
+  request.rules.depth_range = false;
+  for (const Bounds& box : plan_of(request).fits[0].receivers) receivers.add(box);
+  EXPECT_LT(receivers.low.y, -30000.0);
+}
+
+TEST(DepthRange, spares_maps_of_few_bits_the_depth_that_nothing_needs) {
+  RenderRequest truth = request_of(floor_above_a_distant_thing(), "ray-traced");
+  const RenderResult exact = renderer().render(truth);
+  RenderRequest request = request_of(floor_above_a_distant_thing(), "shadow-map");
+  request.parameters["depth_bits"] = std::string("16");
+  const auto missing = [&] {
+    const RenderResult result = renderer().render(request);
+    return metrics::visibility_error(result.visibility, exact.visibility, result.judged)
+        .missing_shadow;
+  };
+  const double fitted = missing();
+  request.rules.depth_range = false;
+  // Steps of half a metre: the box, half a metre high, casts nothing.
+  const double whole = missing();
+  EXPECT_LT(fitted, 0.1 * whole);
+}
+
+TEST(DepthRange, never_raises_an_error_by_fitting) {
+  for (const char* id : {"car", "boxes", "disco-box", "island", "warehouse-outside"})
+    for (const char* technique : {"esm-log", "shadow-map"}) {
+      SCOPED_TRACE(std::string(id) + ", " + technique);
+      const auto resolved = techniques::resolve(technique);
+      RenderRequest request = request_of(*scenes::load(id), resolved.technique->id);
+      RenderRequest truth = request;
+      truth.technique = techniques::resolve("ray-traced").technique;
+      const RenderResult exact = renderer().render(truth);
+      request.parameters = resolved.parameters;
+      if (technique == std::string("shadow-map"))
+        request.parameters["depth_bits"] = std::string("16");
+      const double fitted = false_and_missing(renderer().render(request), exact);
+      request.rules.depth_range = false;
+      // Filters round: a thousandth of the pixels may fall on either side.
+      EXPECT_LE(fitted, false_and_missing(renderer().render(request), exact) + 0.001);
+    }
 }
 
 // What the plan costs and saves is seen on the device.
