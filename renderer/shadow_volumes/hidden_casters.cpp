@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
@@ -10,9 +11,11 @@
 namespace penumbra::shadow_volumes {
 namespace {
 
-/// How many casters are tried as what hides others, and triangles of them in all.
+/// How many casters are tried as what hides others, of how many triangles, and how many triangles
+/// are looked at in all: some tenths of a second.
 constexpr std::size_t most_tried = 64;
-constexpr std::size_t most_triangles = 500000;
+constexpr std::size_t most_triangles = 100000;
+constexpr std::size_t most_looks = 10000000;
 
 /// The way to the light: what lies between a point and the light is point + u (light - w point),
 /// where u runs from 0 to `end`.
@@ -166,18 +169,34 @@ bool may_hide(const Way& way, const Bounds& hider, const Bounds& box) {
   return true;
 }
 
+/// Whether boxes of points and a box are apart.
+template <std::size_t N>
+bool are_apart(const std::array<glm::dvec3, N>& points, const Bounds& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto beyond = [&](const glm::dvec3& p) { return p[axis] > box.high[axis]; };
+    const auto before = [&](const glm::dvec3& p) { return p[axis] < box.low[axis]; };
+    if (std::all_of(points.begin(), points.end(), beyond) ||
+        std::all_of(points.begin(), points.end(), before))
+      return true;
+  }
+  return false;
+}
+
 /// Whether a point is in shadow can change within the box only where it meets a triangle, or the
 /// shadow of a border: where none does, the middle tells of the whole.
 bool hides(const Hider& hider, const Way& way, const Bounds& box) {
-  for (const auto& [p, q] : hider.borders)
-    if (shadow_meets(way, p, q, box)) return false;
+  const auto hides_middle = [&](const Corners& t) { return is_hidden(box.center(), way, t); };
+  if (std::none_of(hider.triangles.begin(), hider.triangles.end(), hides_middle)) return false;
   const Polygon domain{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  bool hidden = false;
-  for (const Corners& t : hider.triangles) {
-    if (meets(domain, t[0], t[1] - t[0], t[2] - t[0], box.low, box.high)) return false;
-    hidden = hidden || is_hidden(box.center(), way, t);
-  }
-  return hidden;
+  for (const Corners& t : hider.triangles)
+    if (!are_apart(t, box) && meets(domain, t[0], t[1] - t[0], t[2] - t[0], box.low, box.high))
+      return false;
+  Bounds between = box;  // all points between box and light
+  between.add(box.low + way.end * way.from(box.low));
+  between.add(box.high + way.end * way.from(box.high));
+  for (const auto& edge : hider.borders)
+    if (!are_apart(edge, between) && shadow_meets(way, edge[0], edge[1], box)) return false;
+  return true;
 }
 
 }  // namespace
@@ -192,7 +211,7 @@ std::set<std::uint32_t> find_hidden_casters(const GpuScene& scene, const WorldLi
     return std::tie(b.size_from_light, a.instance) < std::tie(a.size_from_light, b.instance);
   });
   std::set<std::uint32_t> hidden;
-  std::size_t tried = 0, triangles = 0;
+  std::size_t tried = 0, looks = 0;
   for (const Caster& hider : casters) {
     if (tried == most_tried) break;
     std::vector<const Caster*> candidates;
@@ -200,9 +219,11 @@ std::set<std::uint32_t> find_hidden_casters(const GpuScene& scene, const WorldLi
       if (caster.instance != hider.instance && !hidden.contains(caster.instance) &&
           may_hide(way, hider.box, caster.box))
         candidates.push_back(&caster);
-    if (candidates.empty() || triangles + hider.triangles > most_triangles) continue;
+    const std::size_t needed = hider.triangles * candidates.size();
+    if (candidates.empty() || hider.triangles > most_triangles || looks + needed > most_looks)
+      continue;
     ++tried;
-    triangles += hider.triangles;
+    looks += needed;
     const Hider seen = make_hider(scene, way, hider.instance);
     for (const Caster* caster : candidates) {
       // Rounding of positions must not matter.
