@@ -80,7 +80,8 @@ Parameter clamp_parameter() {
   clamp.type = ParameterType::boolean;
   clamp.default_value = false;
   clamp.meaning =
-      "Culls casters that cannot shadow anything visible and, where shadows are hard, those that lie "
+      "Culls casters that cannot shadow anything visible and, where shadows are hard, those that "
+      "lie "
       "in the shadow of another, and ends volumes behind the last visible surface instead of at "
       "infinity.";
   return clamp;
@@ -195,6 +196,8 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
   caps.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_volumes/open_cap.vert"}};
   state.vertex_input = vulkan::VertexInput::none;
   state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  // Clipped at the near plane as the geometry buffer was; the far plane is behind all casters.
+  state.depth_clamp = false;
   add(caps, state, true);
 }
 
@@ -253,9 +256,8 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   draws = list_volume_draws(context, wanted);
   add_steps(context, options, draws, steps, nullptr);
   if (options.near_caps) {
-    // Caps need not be clamped, nor culled by what is visible, but for the pyramid between light
-    // and near plane.
-    wanted.clamp = false;
+    // What is culled has neither sides nor caps; besides, only what lies between light and near
+    // plane has caps.
     wanted.accept = in_shadow;
     shading_camera = list_volume_draws(context, wanted);
     add_near_caps(context, options, near_plane, shading_camera, steps);

@@ -37,6 +37,13 @@ VolumeBounds::VolumeBounds(const PrepareContext& context, double light_radius)
       planes_.push_back(plane);
   for (const DrawRange& range : context.scene.ranges())
     if (may_touch(range.box(), sides)) receivers_.add(range.box());
+  if (receivers_.empty()) return;
+  // A view ray that starts behind the end of a volume would enter it through the end.
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0}) {
+      const glm::dvec4 corner = context.camera.world_from_clip * glm::dvec4(x, y, 1.0, 1.0);
+      receivers_.add(glm::dvec3(corner) / corner.w);
+    }
 }
 
 bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const {

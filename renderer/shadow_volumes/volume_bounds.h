@@ -17,9 +17,9 @@ class VolumeBounds {
   /// whose inside holds both the light and everything visible.
   bool may_shadow(const glm::vec3& low, const glm::vec3& high) const;
 
-  /// Plane behind all visible surfaces, seen along the way from the light through the box: xyz unit
-  /// away from the light, w distance from the light (from the origin for a directional light).
-  /// Empty where the box reaches behind the light.
+  /// Plane behind all visible surfaces and the near plane, seen along the way from the light
+  /// through the box: xyz unit away from the light, w distance from the light (from the origin for
+  /// a directional light). Empty where the box reaches behind the light.
   std::optional<glm::vec4> end_plane(const glm::vec3& low, const glm::vec3& high) const;
 
   /// Reversed depth just behind everything visible: where a far plane would stand.
@@ -29,7 +29,7 @@ class VolumeBounds {
   const WorldLight& light_;
   double light_radius_;
   std::vector<glm::dvec4> planes_;  ///< of the view, pointing inwards, with the light inside
-  Bounds receivers_;                ///< box around all parts of the scene in view
+  Bounds receivers_;  ///< box around all parts of the scene in view and the near plane
 };
 
 }  // namespace penumbra::shadow_volumes

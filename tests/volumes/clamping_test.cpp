@@ -93,6 +93,41 @@ TEST(Clamping, spares_the_fragments_of_what_stands_under_a_roof) {
             volumes_of(whole).fragment_invocations * 7 / 10);
 }
 
+/// A low sun throws the shadow of a box over the ground's border, and there the camera stands.
+Scene camera_behind_all_surfaces() {
+  scenes::SceneBuilder b("behind", "A camera in the shadow behind everything");
+  const scenes::Look look = b.look("grey", glm::vec3(0.7f));
+  b.ground({-3.0, -2.0}, {1.0, 2.0}, look);
+  b.place(scenes::box({-1.2, 0.3, -0.6}, {-0.8, 1.3, 0.6}), look, "box");
+  b.spot("sun", {-10.0, 1.5, 0.0}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 50.0, LightExtent{})
+      .kind = LightKind::directional;
+  b.camera("main", {4.0, 0.35, 0.1}, {-0.5, 0.1, 0.0}, 40.0);
+  return b.scene;
+}
+
+/// A narrow lamp, and between it and the camera a box that its cone misses.
+Scene camera_behind_a_box_outside_the_cone() {
+  scenes::SceneBuilder b("beside", "A camera behind a box that the cone misses");
+  const scenes::Look look = b.look("grey", glm::vec3(0.7f));
+  b.ground({-3.0, -3.0}, {3.0, 3.0}, look);
+  b.place(scenes::box({-0.2, 0.4, -0.2}, {0.2, 0.8, 0.2}), look, "lit box");
+  b.place(scenes::box({1.4, 2.2, -0.5}, {1.6, 2.8, 0.5}), look, "box outside");
+  b.spot("lamp", {0.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 18.0, LightExtent{});
+  b.camera("main", {2.3, 1.55, 0.0}, {0.0, 0.2, 0.0}, 40.0);
+  return b.scene;
+}
+
+TEST(Clamping, keeps_the_count_of_a_near_plane_in_shadow) {
+  for (const Scene& scene :
+       {camera_behind_all_surfaces(), camera_behind_a_box_outside_the_cone()}) {
+    for (const char* technique : {"shadow-volumes-zpass-plus", "shadow-volumes"})
+      EXPECT_LE(wrong_pixels(scene, draw(scene, technique, {{"clamp", true}})), 2)
+          << scene.id << ' ' << technique;
+    EXPECT_GT(wrong_pixels(scene, draw(scene, "shadow-volumes-zpass")), 500)
+        << scene.id << ": the near plane is in shadow";
+  }
+}
+
 TEST(Clamping, keeps_caps_on_the_near_plane_and_sides_in_step) {
   const Scene scene = *scenes::load("camera-in-volume");
   EXPECT_LE(wrong_pixels(scene, draw(scene, "shadow-volumes-zpass-plus", {{"clamp", true}})), 5);

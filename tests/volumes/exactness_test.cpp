@@ -112,6 +112,21 @@ TEST(ShadowVolumes, of_open_hills_leave_no_specks_where_caps_lie_in_lit_surfaces
   }
 }
 
+TEST(ShadowVolumes, of_open_hills_that_the_near_plane_cuts_leave_no_specks) {
+  Scene scene = hills(60);
+  for (Material& material : scene.materials) material.double_sided = true;
+  Camera& camera = scene.cameras[0];
+  camera.position = {0.4, 0.3, 1.0};
+  camera.target = {0.0, 0.0, 0.0};
+  camera.orthographic_height = 3.0;
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    camera.projection = projection;
+    const std::vector<int> truth = test::exact_visibility(scene, {}, size);
+    EXPECT_GT(std::count(truth.begin(), truth.end(), 1), 4000);
+    EXPECT_LE(compare(draw(scene, "shadow-volumes"), truth).different, 2);
+  }
+}
+
 TEST(ShadowVolumes, counted_in_one_pass_and_in_two_differ_at_most_by_slivers) {
   // A driver that culls clipped triangles before it moves their corners onto the grid of the
   // rasteriser drops slivers which that turns over; with a two-sided stencil they count.
