@@ -332,4 +332,21 @@ PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options) {
   return set;
 }
 
+void sort_by_place(std::vector<PlaneGroup>& groups) {
+  Bounds all;
+  for (const PlaneGroup& group : groups) all.add(group.box().center());
+  const glm::dvec3 cell = glm::max(all.size(), glm::dvec3(1e-30)) / 1023.0;
+  std::vector<std::pair<std::uint64_t, PlaneGroup>> placed;
+  for (PlaneGroup& group : groups) {
+    const glm::uvec3 at((group.box().center() - all.low) / cell);
+    std::uint64_t code = 0;
+    for (int bit = 9; bit >= 0; --bit)
+      for (int axis = 0; axis < 3; ++axis) code = code << 1 | (at[axis] >> bit & 1u);
+    placed.emplace_back(code, std::move(group));
+  }
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < groups.size(); ++i) groups[i] = std::move(placed[i].second);
+}
+
 }  // namespace penumbra::techniques::occluder_textures

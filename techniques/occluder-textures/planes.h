@@ -40,6 +40,9 @@ struct PlaneSet {
 /// many of all as memory allows.
 PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options);
 
+/// Puts groups that lie near each other next to each other (Morton's order of their middles).
+void sort_by_place(std::vector<PlaneGroup>& groups);
+
 /// The planes that the scene's author placed.
 PlaneSet authored_planes(const GpuScene& scene, const PlaneOptions& options);
 

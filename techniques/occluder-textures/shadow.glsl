@@ -10,9 +10,9 @@ struct OccluderPlaneData {
   vec4 high;
 };
 struct OccluderGroupData {
-  vec4 low;      // box around the planes
+  vec4 low;       // box around the planes
   vec4 high;
-  uvec4 planes;  // x the first, y how many
+  uvec4 members;  // planes, or groups of a cluster: x the first, y how many
 };
 layout(std430) readonly buffer OccluderPlaneBlock {
   uvec4 occluder_plane_count;
@@ -21,6 +21,10 @@ layout(std430) readonly buffer OccluderPlaneBlock {
 layout(std430) readonly buffer OccluderGroupBlock {
   uvec4 occluder_group_count;
   OccluderGroupData occluder_groups[];
+};
+layout(std430) readonly buffer OccluderClusterBlock {
+  uvec4 occluder_cluster_count;
+  OccluderGroupData occluder_clusters[];  // of groups near each other
 };
 uniform sampler2DArray occluder_textures;
 
@@ -55,11 +59,15 @@ float calculate_shadow(ShadowQuery query) {
   // A direction along a side of a box must not give 0 / 0.
   vec3 steps = mix(query.to_light, vec3(1e-20), lessThan(abs(query.to_light), vec3(1e-20)));
   vec3 inverse = 1.0 / steps;
-  for (uint i = 0u; i < occluder_group_count.x; ++i) {
-    OccluderGroupData group = occluder_groups[i];
-    if (!meets(group, query, inverse)) continue;
-    for (uint k = 0u; k < group.planes.y; ++k)
-      visible *= light_past(occluder_planes[group.planes.x + k], query);
+  for (uint c = 0u; c < occluder_cluster_count.x; ++c) {
+    OccluderGroupData cluster = occluder_clusters[c];
+    if (!meets(cluster, query, inverse)) continue;
+    for (uint i = 0u; i < cluster.members.y; ++i) {
+      OccluderGroupData group = occluder_groups[cluster.members.x + i];
+      if (!meets(group, query, inverse)) continue;
+      for (uint k = 0u; k < group.members.y; ++k)
+        visible *= light_past(occluder_planes[group.members.x + k], query);
+    }
   }
   return visible;
 }

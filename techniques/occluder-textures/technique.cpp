@@ -17,8 +17,11 @@ struct PlaneData {
 /// OccluderGroupData, likewise.
 struct GroupData {
   glm::vec4 low, high;
-  glm::uvec4 planes;
+  glm::uvec4 members;
 };
+
+/// Groups next to each other that are passed by together.
+constexpr std::uint32_t cluster_size = 8;
 
 /// A shader walks all groups, and some drivers end its loops in silence after 65,535 rounds.
 constexpr std::size_t most_groups = 20000;
@@ -54,8 +57,9 @@ class OccluderTextures : public Technique {
     options.extend = static_cast<std::uint32_t>(integer_of(parameters, "extend"));
     const bool authored =
         !context.scene.scene().shadow_planes.empty() && choice_of(parameters, "source") == "scene";
-    const PlaneSet set = authored ? occluder_textures::authored_planes(context.scene, options)
-                                  : occluder_textures::generate_planes(context.scene, options);
+    PlaneSet set = authored ? occluder_textures::authored_planes(context.scene, options)
+                            : occluder_textures::generate_planes(context.scene, options);
+    occluder_textures::sort_by_place(set.groups);
     sampling_ =
         boolean_of(parameters, "bilinear") ? vulkan::Sampling::linear : vulkan::Sampling::nearest;
     upload_planes(context, set);
@@ -69,6 +73,7 @@ class OccluderTextures : public Technique {
   void bind(vulkan::Bindings& bindings) const override {
     bindings.buffer("OccluderPlaneBlock", planes_.whole());
     bindings.buffer("OccluderGroupBlock", groups_.whole());
+    bindings.buffer("OccluderClusterBlock", clusters_.whole());
     bindings.texture("occluder_textures", textures_, sampling_);
   }
 
@@ -93,6 +98,7 @@ class OccluderTextures : public Technique {
                         "scene");
     std::vector<PlaneData> planes;
     std::vector<GroupData> groups;
+    std::vector<GroupData> clusters;
     for (const PlaneGroup& group : set.groups) {
       const Bounds box = group.box();
       // Boxes of single planes are flat, and rounding must not lose them.
@@ -101,9 +107,16 @@ class OccluderTextures : public Technique {
                         glm::vec4(glm::vec3(box.high) + margin, 0.0f),
                         {planes.size(), group.planes.size(), 0, 0}});
       for (const OccluderPlane& plane : group.planes) planes.push_back(data_of(plane));
+      const auto index = static_cast<std::uint32_t>(groups.size() - 1);
+      if (index % cluster_size == 0)
+        clusters.push_back({groups.back().low, groups.back().high, {index, 0, 0, 0}});
+      clusters.back().low = glm::min(clusters.back().low, groups.back().low);
+      clusters.back().high = glm::max(clusters.back().high, groups.back().high);
+      ++clusters.back().members.y;
     }
     planes_ = upload_list(context, "occluder planes", planes);
     groups_ = upload_list(context, "occluder groups", groups);
+    clusters_ = upload_list(context, "occluder clusters", clusters);
   }
 
   void upload_textures(PrepareContext& context, const PlaneSet& set, std::uint32_t resolution) {
@@ -133,7 +146,7 @@ class OccluderTextures : public Technique {
   }
 
   vulkan::Image textures_;
-  vulkan::Buffer planes_, groups_;
+  vulkan::Buffer planes_, groups_, clusters_;
   vulkan::Sampling sampling_ = vulkan::Sampling::linear;
 };
 
