@@ -13,10 +13,13 @@ float mean_of_box(MapPoint point, int size) {
   return lit / float(size * size);
 }
 
+/// The place between texels that samplers make of one: they know 1/256 of a texel.
+vec2 sampled_place(vec2 texel) { return round(256.0 * texel) / 256.0; }
+
 /// Mean over size x size bilinear comparisons a texel apart. Neighbouring ones share texels: it is a
 /// mean over (size + 1)^2 texels of which the outermost count by the share that they are covered.
 float mean_of_bilinear(MapPoint point, int size) {
-  vec2 corner = point.texel - 0.5 * float(size);
+  vec2 corner = sampled_place(point.texel) - 0.5 * float(size);
   ivec2 first = ivec2(floor(corner));
   vec2 share = corner - vec2(first);
   float lit = 0.0;

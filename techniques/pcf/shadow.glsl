@@ -10,7 +10,7 @@ float mean_of_hardware_bilinear(MapPoint point, int size) {
   float lit = 0.0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      vec2 place = point.texel + vec2(x, y) - 0.5 * float(size - 1);
+      vec2 place = sampled_place(point.texel) + vec2(x, y) - 0.5 * float(size - 1);
       ivec2 first = ivec2(floor(place - 0.5));
       float depth = 1.0;
       for (int corner = 0; corner < 4; ++corner)
