@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <regex>
 #include <set>
 #include <stdexcept>
 
@@ -65,6 +67,21 @@ TEST(Registry, HoldsEveryFolderOfTechniquesButTheTemplate) {
   for (const TechniqueDescription& technique : all()) ids.push_back(technique.id);
   EXPECT_THAT(ids, UnorderedElementsAreArray(folders));
   EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+}
+
+TEST(Pages, ShowTheirTechniqueInPicturesThatAreThere) {
+  const std::filesystem::path root = std::filesystem::path(PENUMBRA_SOURCE_DIR) / "techniques";
+  const std::regex picture(R"(!\[[^\]]*\]\(([^)]+)\))");
+  for (const auto& technique : techniques::all()) {
+    std::ifstream file(root / technique.id / "README.md");
+    const std::string page((std::istreambuf_iterator<char>(file)), {});
+    int pictures = 0;
+    for (std::sregex_iterator found(page.begin(), page.end(), picture), end; found != end;
+         ++found, ++pictures)
+      EXPECT_TRUE(std::filesystem::exists(root / technique.id / (*found)[1].str()))
+          << technique.id << ": " << (*found)[1];
+    EXPECT_GE(pictures, 1) << technique.id;
+  }
 }
 
 TEST(Registry, ResolvesEveryPresetItOffers) {
