@@ -152,10 +152,14 @@ TEST_F(Costs, a_pass_made_four_times_heavier_grows_and_the_others_do_not) {
 }
 
 TEST_F(Costs, passes_add_up_to_the_frames_wall_time) {
+  // Submitting a frame takes some tenths of a millisecond on any device: there must be work beside it.
+  std::int64_t steps = 800;
+  while (measured(steps, steps).wall_median_ms < 10.0 && steps < 100000) steps *= 4;
+  steps = std::min<std::int64_t>(steps, 100000);
   // Another program may take the processor between two passes; the best of a few runs counts.
   double best = 0.0;
   for (int run = 0; run < 5 && best < 0.9; ++run) {
-    const Cost cost = measured(800, 800);
+    const Cost cost = measured(steps, steps);
     double sum = 0.0;
     for (const PassCost& part : cost.passes) sum += part.median_ms;
     EXPECT_LE(cost.median_ms, cost.wall_median_ms * 1.001);
@@ -188,7 +192,11 @@ TEST_F(Costs, memory_is_what_the_images_hold) {
   const Cost cost = measured(1, 1);
   ASSERT_EQ(cost.technique_memory.size(), 1u);
   EXPECT_EQ(cost.technique_memory[0].name, "worked");
-  EXPECT_EQ(cost.technique_memory[0].bytes, 160u * 160 * 4);
+  // A GPU may pad an image that is no power of two.
+  EXPECT_GE(cost.technique_memory[0].bytes, 160u * 160 * 4);
+  if (renderer().device().type == "cpu") {
+    EXPECT_EQ(cost.technique_memory[0].bytes, 160u * 160 * 4);
+  }
   const auto map = techniques::resolve("shadow-map");
   request.technique = map.technique;
   request.parameters = {};
