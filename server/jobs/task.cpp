@@ -20,12 +20,12 @@ constexpr double draw_patience_s = 30.0;
 constexpr double measure_patience_s = 20.0;
 
 /// Timing that nobody gave a number of frames for takes about this long at most, milliseconds.
-constexpr double timing_budget_ms = 8000.0;
+constexpr double timing_budget_ms = 2500.0;
 constexpr std::uint32_t fewest_frames = 1;
 
 /// A frame that takes longer is timed the once that it is drawn: what is compiled in it is a small
 /// part of it, and nobody gains by waiting for it again.
-constexpr double longest_repeated_ms = 4000.0;
+constexpr double longest_repeated_ms = 2000.0;
 
 json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
