@@ -14,8 +14,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <sstream>
 
+#include "bench/program.h"
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
@@ -29,38 +29,12 @@ using namespace penumbra;
 struct Options {
   std::string part = "best";
   std::uint32_t size = 200;
-  std::string scenes = "car,boxes,disco-box,island,warehouse-inside,warehouse-outside";
-  std::string filters = "hard,pcf-3,pcf-9,pcss";
-  std::string maps = "256,512,1024";
+  std::vector<std::string> scenes{
+      "car", "boxes", "disco-box", "island", "warehouse-inside", "warehouse-outside"};
+  std::vector<std::string> filters{"hard", "pcf-3", "pcf-9", "pcss"};
+  std::vector<std::int64_t> maps{256, 512, 1024};
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  const std::map<std::string, std::string*> texts{{"--part", &options.part},
-                                                  {"--scenes", &options.scenes},
-                                                  {"--filters", &options.filters},
-                                                  {"--maps", &options.maps},
-                                                  {"--device", &options.device}};
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--size")
-      options.size = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (texts.contains(name))
-      *texts.at(name) = values[i + 1];
-    else
-      throw bad_value(name,
-                      "bench_bias takes --part, --size, --scenes, --filters, --maps, --device");
-  }
-  return options;
-}
-
-std::vector<std::string> items(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
 
 struct Filter {
   std::string technique;
@@ -252,11 +226,11 @@ void run(const Options& options) {
   std::printf("Device: %s (%s). Pictures %ux%u.\n\n", renderer.device().name.c_str(),
               renderer.device().driver.c_str(), options.size, options.size);
   std::printf("%s", part.head);
-  for (const std::string& scene : items(options.scenes)) {
+  for (const std::string& scene : options.scenes) {
     Subject subject(renderer, scene, options.size);
-    for (const std::string& filter : items(options.filters))
-      for (const std::string& map_size : items(options.maps)) {
-        part.print(subject, scene, filter, std::atoll(map_size.c_str()));
+    for (const std::string& filter : options.filters)
+      for (const std::int64_t map_size : options.maps) {
+        part.print(subject, scene, filter, map_size);
         std::fflush(stdout);
       }
   }
@@ -265,11 +239,19 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int count, char** values) {
-  try {
-    run(read_options(count, values));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_bias: %s\n", error.what());
-    return 1;
-  }
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "Errors over bias",
+      [&](CLI::App& app) {
+        app.add_option("--part", options.part, "What to print")
+            ->check(CLI::IsMember({"best", "sweep", "depth"}));
+        app.add_option("--size", options.size, "Pixels, width and height")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--scenes", options.scenes, "Built-in scenes")->delimiter(',');
+        app.add_option("--filters", options.filters, "hard, pcf-3, pcf-9, or techniques")
+            ->delimiter(',');
+        app.add_option("--maps", options.maps, "Sizes of maps, texels")->delimiter(',');
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }

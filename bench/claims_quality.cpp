@@ -8,10 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 
+#include "bench/program.h"
 #include "bench/van_sambeek_2007.h"
-#include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
@@ -29,27 +28,6 @@ struct Options {
   std::uint32_t light_samples = 1024;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--sizes") {
-      options.sizes.clear();
-      std::istringstream list(values[i + 1]);
-      for (std::string size; std::getline(list, size, ',');)
-        options.sizes.push_back(static_cast<std::uint32_t>(std::stoul(size)));
-    } else if (name == "--light-samples") {
-      options.light_samples = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    } else if (name == "--device") {
-      options.device = values[i + 1];
-    } else {
-      throw bad_value(name, "bench_claims_quality takes --sizes, --light-samples and --device");
-    }
-  }
-  if (options.sizes.size() < 2) throw bad_value("--sizes", "give two sizes at least");
-  return options;
-}
 
 bool is_volume(const std::string& id) {
   return id.find("volumes") != std::string::npos;
@@ -290,11 +268,16 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int count, char** values) {
-  try {
-    run(read_options(count, values));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_claims_quality: %s\n", error.what());
-    return 1;
-  }
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "What van Sambeek 2007 published of quality, claim by claim",
+      [&](CLI::App& app) {
+        app.add_option("--sizes", options.sizes, "Pixels, two sizes at least")
+            ->delimiter(',')
+            ->expected(2, 100);
+        app.add_option("--light-samples", options.light_samples, "Of the reference")
+            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }

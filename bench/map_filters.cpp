@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "renderer/error.h"
+#include "bench/program.h"
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/shadow_maps/blurred_map.h"
 #include "renderer/shadow_maps/summed_area.h"
@@ -112,20 +112,6 @@ struct Options {
   int repeats = 15;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--repeats")
-      options.repeats = std::max(std::atoi(values[i + 1]), 1);
-    else if (name == "--device")
-      options.device = values[i + 1];
-    else
-      throw bad_value(name, "bench_map_filters takes --repeats and --device");
-  }
-  return options;
-}
 
 struct Case {
   std::uint32_t size;
@@ -333,11 +319,13 @@ void run(const Options& options) {
 }  // namespace penumbra
 
 int main(int count, char** values) {
-  try {
-    penumbra::run(penumbra::read_options(count, values));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_map_filters: %s\n", error.what());
-    return 1;
-  }
+  penumbra::Options options;
+  return penumbra::bench::run_program(
+      count, values, "Ways to filter a map, in turns",
+      [&](CLI::App& app) {
+        app.add_option("--repeats", options.repeats, "Times that each way is taken")
+            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { penumbra::run(options); });
 }

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "bench/program.h"
 #include "bench/van_sambeek_2007.h"
-#include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
@@ -26,22 +26,6 @@ struct Options {
   std::uint32_t light_samples = 256;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--size")
-      options.size = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--light-samples")
-      options.light_samples = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--device")
-      options.device = values[i + 1];
-    else
-      throw bad_value(name, "bench_maps_quality takes --size, --light-samples and --device");
-  }
-  return options;
-}
 
 /// Every map technique by its own id and by its presets'.
 std::vector<std::string> subjects() {
@@ -143,11 +127,15 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int count, char** values) {
-  try {
-    run(read_options(count, values));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_maps_quality: %s\n", error.what());
-    return 1;
-  }
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "Errors of every map technique beside table 4.2 of van Sambeek 2007",
+      [&](CLI::App& app) {
+        app.add_option("--size", options.size, "Pixels, width and height")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--light-samples", options.light_samples, "Of the reference")
+            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }

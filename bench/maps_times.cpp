@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "renderer/error.h"
+#include "bench/program.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
@@ -24,27 +24,6 @@ struct Options {
   int pairs = 15;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--part")
-      options.part = values[i + 1];
-    else if (name == "--scene")
-      options.scene = values[i + 1];
-    else if (name == "--frames")
-      options.frames = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--pairs")
-      options.pairs = std::max(std::atoi(values[i + 1]), 2);
-    else if (name == "--device")
-      options.device = values[i + 1];
-    else
-      throw bad_value(name,
-                      "bench_maps_times takes --part, --scene, --frames, --pairs and --device");
-  }
-  return options;
-}
 
 /// A filter as a row of the table: the width of its kernel is set by `kernel`, or by `blur`, a
 /// radius.
@@ -147,20 +126,30 @@ void print_doubling(Timer& timer, int pairs) {
       pairs, std::exp(mean), std::exp(mean - 2.0 * error), std::exp(mean + 2.0 * error));
 }
 
+void run(const Options& options) {
+  Timer timer(options);
+  std::printf("Device: %s (%s). Scene %s, 1024x768, map 1024x1024, median of %u frames.\n\n",
+              timer.device().name.c_str(), timer.device().driver.c_str(), options.scene.c_str(),
+              options.frames);
+  if (options.part != "doubling") print_table(timer);
+  if (options.part != "table") print_doubling(timer, options.pairs);
+}
+
 }  // namespace
 
 int main(int count, char** values) {
-  try {
-    const Options options = read_options(count, values);
-    Timer timer(options);
-    std::printf("Device: %s (%s). Scene %s, 1024x768, map 1024x1024, median of %u frames.\n\n",
-                timer.device().name.c_str(), timer.device().driver.c_str(), options.scene.c_str(),
-                options.frames);
-    if (options.part != "doubling") print_table(timer);
-    if (options.part != "table") print_doubling(timer, options.pairs);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_maps_times: %s\n", error.what());
-    return 1;
-  }
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "Times of map filters over their kernel",
+      [&](CLI::App& app) {
+        app.add_option("--part", options.part, "What to print")
+            ->check(CLI::IsMember({"all", "table", "doubling"}));
+        app.add_option("--scene", options.scene, "A built-in scene");
+        app.add_option("--frames", options.frames, "Frames that are timed")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--pairs", options.pairs, "Interleaved pairs of frames, two at least")
+            ->check(CLI::Range(2, 100000));
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "bench/program.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "renderer/scene/plan.h"
@@ -77,10 +78,7 @@ void print_depth_range(std::uint32_t width) {
     }
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  const auto width = static_cast<std::uint32_t>(count > 1 ? std::atoi(arguments[1]) : 300);
+void print_rules(std::uint32_t width) {
   std::printf("device: %s\n\n", Renderer({}).device().name.c_str());
   std::printf(
       "| scene | lens | technique | rule off | MiB | vertices | first frame ms | frame ms |\n");
@@ -114,6 +112,19 @@ int main(int count, char** arguments) {
         request.rules = {.lights = false, .surfaces = false, .casters = false, .textures = false};
         print("all");
       }
-  print_depth_range(width);
-  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  std::uint32_t width = 300;
+  return bench::run_program(
+      count, values, "What each rule of the plan saves",
+      [&](CLI::App& app) {
+        app.add_option("WIDTH", width, "Pixels, width and height")->check(CLI::PositiveNumber);
+      },
+      [&] {
+        print_rules(width);
+        print_depth_range(width);
+      });
 }

@@ -14,7 +14,7 @@
 #include <limits>
 #include <thread>
 
-#include "renderer/error.h"
+#include "bench/program.h"
 #include "renderer/frame/light_points.h"
 #include "renderer/frame/transforms.h"
 #include "renderer/reference/occlusion_mask.h"
@@ -191,7 +191,7 @@ struct Timing {
   std::vector<double> shaded, visibility, embree;
 };
 
-int run(const std::string& name, std::uint32_t size, std::uint32_t samples, int rounds) {
+void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int rounds) {
   const std::shared_ptr<const Scene> scene = scenes::load(name);
   vulkan::Device device({"", false});
   const GpuScene gpu(device, scene, std::vector<InstanceUse>(scene->instances.size()),
@@ -244,21 +244,23 @@ int run(const std::string& name, std::uint32_t size, std::uint32_t samples, int 
   };
   line("shaded", median(timing.shaded));
   line("visibility", median(timing.visibility));
-  return 0;
 }
 
 }  // namespace
 }  // namespace penumbra
 
-int main(int argc, char** argv) {
-  const auto number = [&](int index, int fallback) {
-    return argc > index ? std::max(1, std::atoi(argv[index])) : fallback;
-  };
-  try {
-    return penumbra::run(argc > 1 ? argv[1] : "boxes", static_cast<std::uint32_t>(number(2, 600)),
-                         static_cast<std::uint32_t>(number(3, 1024)), number(4, 5));
-  } catch (const penumbra::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+int main(int count, char** values) {
+  std::string scene = "boxes";
+  std::uint32_t size = 600;
+  std::uint32_t samples = 1024;
+  int rounds = 5;
+  return penumbra::bench::run_program(
+      count, values, "The reference beside Embree, which traces every ray of it",
+      [&](CLI::App& app) {
+        app.add_option("SCENE", scene, "A built-in scene");
+        app.add_option("SIZE", size, "Pixels, width and height")->check(CLI::PositiveNumber);
+        app.add_option("SAMPLES", samples, "Light samples")->check(CLI::PositiveNumber);
+        app.add_option("ROUNDS", rounds, "Rounds in turns")->check(CLI::PositiveNumber);
+      },
+      [&] { penumbra::run(scene, size, samples, rounds); });
 }

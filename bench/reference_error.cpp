@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "bench/program.h"
 #include "renderer/error.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
@@ -93,7 +94,7 @@ void draw(const std::string& file, const std::vector<Row>& rows) {
   if (!out) throw Error("io", "cannot write " + file, "FIGURE.svg");
 }
 
-int run(const std::string& figure) {
+void run(const std::string& figure) {
   Renderer renderer({"", false});
   std::printf("half-plane, %ux%u, %d seeds, %s\n\n", size, size, static_cast<int>(seeds),
               renderer.device().name.c_str());
@@ -113,17 +114,15 @@ int run(const std::string& figure) {
   std::printf("\nerror falls as N^%.2f (low-discrepancy), N^%.2f (random) from %u samples on\n",
               slope(&Row::even), slope(&Row::random), rows[4].samples);
   if (!figure.empty()) draw(figure, rows);
-  return 0;
 }
 
 }  // namespace
 }  // namespace penumbra
 
-int main(int argc, char** argv) {
-  try {
-    return penumbra::run(argc > 1 ? argv[1] : "");
-  } catch (const penumbra::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+int main(int count, char** values) {
+  std::string figure;
+  return penumbra::bench::run_program(
+      count, values, "Error of the reference against the number of light samples",
+      [&](CLI::App& app) { app.add_option("FIGURE", figure, "A plot of it, .svg"); },
+      [&] { penumbra::run(figure); });
 }

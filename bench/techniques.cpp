@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/program.h"
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
@@ -26,26 +27,6 @@ struct Options {
   std::uint32_t frames = 5;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    const auto number = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    if (name == "--width")
-      options.width = number;
-    else if (name == "--light-samples")
-      options.light_samples = number;
-    else if (name == "--frames")
-      options.frames = number;
-    else if (name == "--device")
-      options.device = values[i + 1];
-    else
-      throw bad_value(name,
-                      "bench_techniques takes --width, --light-samples, --frames and --device");
-  }
-  return options;
-}
 
 struct Cell {
   std::string ms = "-";
@@ -72,7 +53,7 @@ void print_table(const char* title, const std::vector<std::string>& rows,
   }
 }
 
-int run(const Options& options) {
+void run(const Options& options) {
   std::vector<std::string> rows;
   for (const auto& technique : techniques::all()) rows.push_back(technique.id);
   for (const auto& preset : techniques::presets()) rows.push_back(preset.id);
@@ -111,14 +92,22 @@ int run(const Options& options) {
               options.frames);
   print_table("Milliseconds per frame", rows, cells, &Cell::ms);
   print_table("rms_y against the reference, 0..255", rows, cells, &Cell::rms_y);
-  return 0;
 }
 
 }  // namespace
 
-int main(int count, char** values) try {
-  return run(read_options(count, values));
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "bench_techniques: %s\n", error.what());
-  return 1;
+int main(int count, char** values) {
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "Times and errors of every technique on the scenes of the survey",
+      [&](CLI::App& app) {
+        app.add_option("--width", options.width, "Pixels, width and height")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--light-samples", options.light_samples, "Of the reference")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--frames", options.frames, "Frames that are timed")
+            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "renderer/error.h"
+#include "bench/program.h"
 #include "renderer/render.h"
 #include "scenes/built_in/built_in.h"
 #include "scenes/library.h"
@@ -26,27 +26,6 @@ struct Options {
   int rounds = 9;
   std::string device;
 };
-
-Options read_options(int count, char** values) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i];
-    if (name == "--part")
-      options.part = values[i + 1];
-    else if (name == "--width")
-      options.width = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--frames")
-      options.frames = static_cast<std::uint32_t>(std::atoi(values[i + 1]));
-    else if (name == "--rounds")
-      options.rounds = std::max(std::atoi(values[i + 1]), 1);
-    else if (name == "--device")
-      options.device = values[i + 1];
-    else
-      throw bad_value(name,
-                      "bench_volumes_times takes --part, --width, --frames, --rounds and --device");
-  }
-  return options;
-}
 
 struct Variant {
   const char* label;
@@ -191,18 +170,31 @@ void measure_fleet(Timer& timer, const Options& options) {
     }
 }
 
-}  // namespace
-
-int main(int count, char** values) try {
-  const Options options = read_options(count, values);
+void run(const Options& options) {
   Timer timer(options);
   std::printf("%s (%s), %ux%u, %d rounds of the median of %u frames\n", timer.device().name.c_str(),
               timer.device().driver.c_str(), options.width, options.width, options.rounds,
               options.frames);
   if (options.part != "fleet") measure_volumes(timer, options);
   if (options.part != "volumes") measure_fleet(timer, options);
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "bench_volumes_times: %s\n", error.what());
-  return 1;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  Options options;
+  return penumbra::bench::run_program(
+      count, values, "What shadows from geometry cost over each other",
+      [&](CLI::App& app) {
+        app.add_option("--part", options.part, "What to print")
+            ->check(CLI::IsMember({"all", "volumes", "fleet"}));
+        app.add_option("--width", options.width, "Pixels, width and height")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--frames", options.frames, "Frames of a round, their median counts")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--rounds", options.rounds, "Rounds over all variants")
+            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_device_option(app, options.device);
+      },
+      [&] { run(options); });
 }
