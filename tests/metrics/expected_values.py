@@ -5,7 +5,13 @@ Not part of the tests: it records where their numbers come from. SSIM is scikit-
 written down here from the paper in its plain form, with whole two-dimensional kernels, so that it
 shares nothing with the separable, row by row C++. Needs numpy, scipy and scikit-image
 (Debian: python3-skimage).
+
+`expected_values.py FOLDER` writes the pair of pictures whose SSIM is published for IPOL's imdiff
+(Getreuer 2011, doi 10.5201/ipol.2011.g_lmii, quoted by scikit-image's tests): 0.357959.
+`penumbra compare FOLDER/camera.png FOLDER/camera-noisy.png` says 0.357964.
 """
+import sys
+
 import numpy as np
 from scipy.ndimage import correlate
 from skimage.metrics import structural_similarity
@@ -113,7 +119,19 @@ def flip(a, b, ppd=67.0):
     return (color ** (1 - feature)).mean()
 
 
+def write_published_pair(folder):
+    from skimage import data, io
+    camera = data.camera()
+    np.random.seed(5)
+    noisy = np.clip(camera + 20.0 * np.random.randn(*camera.shape), 0, 255).astype(np.uint8)
+    io.imsave(folder + '/camera.png', camera)
+    io.imsave(folder + '/camera-noisy.png', noisy)
+
+
 if __name__ == '__main__':
+    if len(sys.argv) > 1:
+        write_published_pair(sys.argv[1])
+        sys.exit()
     n1, n2 = noise(48, 40, 1), noise(48, 40, 2)
     hard, soft = shadow(96, 64, 20, 21), shadow(96, 64, 14, 27)
     faint = (n1.astype(int) * 7 // 8 + 16).astype(np.uint8)
