@@ -1,6 +1,7 @@
 #include "renderer/shadow_volumes/stencil_volumes.h"
 
 #include <algorithm>
+#include <set>
 
 #include "renderer/shadow_volumes/hidden_casters.h"
 #include "renderer/shadow_volumes/near_plane.h"
@@ -55,6 +56,22 @@ void note_ignored_masks(PrepareContext& context) {
           "shadow volumes ignore alpha masks: masked casters cast the shadows of whole triangles");
       return;
     }
+}
+
+/// What is not the closed surface of a body, and what is done with it; where neighbours play a
+/// part.
+void note_defects(PrepareContext& context) {
+  if (context.adjacency == nullptr) return;
+  const Adjacency& adjacency = context.adjacency->host;
+  std::set<std::uint32_t> open;
+  for (const AdjacencyGroup& group : adjacency.groups)
+    if (!group.closed && group.casts_shadow) open.insert(group.instance);
+  if (!open.empty())
+    context.notes.push_back("casters with open edges, which count as silhouettes: " +
+                            std::to_string(open.size()));
+  if (adjacency.non_manifold_edges > 0)
+    context.notes.push_back("edges of more than two triangles, paired by the closest normals: " +
+                            std::to_string(adjacency.non_manifold_edges));
 }
 
 }  // namespace
@@ -236,6 +253,7 @@ VolumeDrawOptions StencilVolumes::draws_wanted(const PrepareContext& context,
 void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
   stencil_ = &context.geometry.depth;
   note_ignored_masks(context);
+  note_defects(context);
   const NearPlane near_plane(context);
   const auto in_shadow = [&](const glm::vec3& low, const glm::vec3& high) {
     return near_plane.may_be_in_shadow_of(low, high);

@@ -301,6 +301,21 @@ TEST(ShadowVolumes, say_that_they_ignore_masks) {
               testing::Contains(testing::HasSubstr("ignore alpha masks")));
 }
 
+TEST(ShadowVolumes, say_which_casters_are_no_closed_bodies) {
+  Scene scene = floating_box(LightKind::spot, Projection::perspective);
+  Mesh& mesh = scene.meshes.back();
+  // A fin on an edge that two triangles share already.
+  const auto fin = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.push_back(mesh.positions[0] + glm::vec3(0.0f, 5.0f, 0.0f));
+  mesh.normals.push_back({1, 0, 0});
+  if (!mesh.uvs.empty()) mesh.uvs.push_back({0, 0});
+  mesh.indices.insert(mesh.indices.end(), {mesh.indices[0], mesh.indices[1], fin});
+  mesh.primitives.back().index_count += 3;
+  EXPECT_THAT(draw(scene, "shadow-volumes").notes,
+              testing::UnorderedElementsAre(testing::HasSubstr("as silhouettes: 1"),
+                                            testing::HasSubstr("closest normals: 1")));
+}
+
 TEST(ShadowVolumes, by_brute_force_draw_many_times_the_fragments_of_silhouettes) {
   const Scene scene = *scenes::load("sweep:4x1600x1");
   const auto fragments = [&](const char* technique) {
