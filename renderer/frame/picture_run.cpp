@@ -202,11 +202,14 @@ void PictureRun::between_parts() {
     control_.between_parts([this] { return state(); });
 }
 
-/// Of what the state of one picture has in common with that of another only by chance.
+/// Differs where a kept state cannot be this picture's: the caller knows the request, this the
+/// rest.
 std::uint64_t PictureRun::signature() const {
   std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
   const auto mix = [&](std::uint64_t value) { hash = (hash ^ value) * 1099511628211ull; };
-  for (const char* c = renderer_version(); *c != '\0'; ++c) mix(static_cast<unsigned char>(*c));
+  const DeviceInfo& device = state_.device.info;
+  for (const char c : renderer_version() + device.name + device.driver)
+    mix(static_cast<unsigned char>(c));
   mix(request_.width);
   mix(request_.height);
   mix(request_.supersampling);
