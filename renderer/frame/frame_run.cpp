@@ -171,7 +171,7 @@ void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index
     LightPass& light = *lights_[i];
     const LightPass::Frame frame{state_.device,
                                  state_.pipelines,
-                                 state_.library,
+                                 state_.shaders,
                                  state_.recorder,
                                  state_.constants,
                                  targets_.geometry,

@@ -129,11 +129,11 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
   }
 }
 
-std::string LightPass::program_path(vulkan::ShaderLibrary& library, const std::string& head) const {
+std::string LightPass::program_path(vulkan::ShaderLibrary& shaders, const std::string& head) const {
   const std::string& technique = setup_.request.technique->shader;
   const std::string path = head + " with " + technique;
-  if (!library.contains(path))
-    library.add(path, "#include \"" + head + "\"\n#include \"" + technique + "\"\n");
+  if (!shaders.contains(path))
+    shaders.add(path, "#include \"" + head + "\"\n#include \"" + technique + "\"\n");
   return path;
 }
 
@@ -155,7 +155,7 @@ vulkan::Bindings LightPass::shading_bindings(const Frame& frame,
 }
 
 void LightPass::shade(const Frame& frame, const vulkan::Bindings& bindings) {
-  draw_light(frame, program_path(frame.library, "renderer/shaders/shade.glsl"),
+  draw_light(frame, program_path(frame.shaders, "renderer/shaders/shade.glsl"),
              [&](const vulkan::Pipeline& pipeline) {
                return shading_bindings(frame, bindings, pipeline);
              });
@@ -225,7 +225,7 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
   const bool uncertain = has_scrambles_ && frame.uncertainty != nullptr;
   if (uncertain) preamble += "#define WITH_UNCERTAINTY\n";
   const vulkan::Pipeline& pipeline = frame.pipelines.compute(
-      program_path(frame.library, "renderer/shaders/shade_points.glsl"), preamble);
+      program_path(frame.shaders, "renderer/shaders/shade_points.glsl"), preamble);
   vulkan::Bindings all = shading_bindings(frame, bindings, pipeline);
   all.storage_image("light_sum", *frame.light_sum);
   if (uncertain) all.storage_image("scramble_sums", frame.uncertainty->sums());
@@ -260,7 +260,7 @@ void LightPass::draw_diagnostic(const Frame& frame, const std::string& name,
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT,
-                    program_path(frame.library, "renderer/shaders/diagnostic.glsl")}};
+                    program_path(frame.shaders, "renderer/shaders/diagnostic.glsl")}};
   source.preamble = setup_.declarations + "#define DRAW_DIAGNOSTIC " + function + "\n";
   vulkan::GraphicsState state;
   state.color_formats = {target.description().format};

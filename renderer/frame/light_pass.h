@@ -39,7 +39,7 @@ class LightPass {
   struct Frame {
     vulkan::Device& device;
     vulkan::PipelineCache& pipelines;
-    vulkan::ShaderLibrary& library;
+    vulkan::ShaderLibrary& shaders;
     vulkan::Recorder& recorder;
     vulkan::ConstantArena& constants;
     const GeometryBuffer& geometry;
@@ -76,7 +76,7 @@ class LightPass {
                   const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of);
   vulkan::Bindings shading_bindings(const Frame& frame, const vulkan::Bindings& light_bindings,
                                     const vulkan::Pipeline& pipeline) const;
-  std::string program_path(vulkan::ShaderLibrary& library, const std::string& head) const;
+  std::string program_path(vulkan::ShaderLibrary& shaders, const std::string& head) const;
 
   const FrameSetup& setup_;
   WorldLight light_;

@@ -49,7 +49,7 @@ RenderResult Renderer::render(const RenderRequest& request, const RenderControl&
   find_diagnostic(*request.technique, request.diagnostic);  // throws for a name that is not known
   const ParameterValues parameters =
       complete_parameters(request.technique->parameters, request.parameters);
-  state->library.add(request.technique->files);
+  state->shaders.add(request.technique->files);
   return PictureRun(*state, request, parameters, control).run();
 }
 

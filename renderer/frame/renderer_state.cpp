@@ -30,13 +30,13 @@ Entry& recent(std::list<Entry>& list, const Matches& matches, const Make& make) 
 
 Renderer::State::State(const RendererOptions& options)
     : device(options),
-      pipelines(device, library),
+      pipelines(device, shaders),
       recorder(device, pipelines),
       constants(device, ledger, constants_bytes),
       faults(device, ledger, "fault counter", sizeof(FaultCounts),
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vulkan::MemoryKind::readback),
       most_window_samples(options.most_window_samples) {
-  library.add(embedded_renderer_shaders());
+  shaders.add(embedded_renderer_shaders());
 }
 
 const std::vector<Bounds>& Renderer::State::boxes_of(const std::shared_ptr<const Scene>& scene) {

@@ -16,7 +16,7 @@ struct Renderer::State {
   const GpuScene& upload(const std::shared_ptr<const Scene>& scene, const Plan& plan);
 
   vulkan::Device device;
-  vulkan::ShaderLibrary library;
+  vulkan::ShaderLibrary shaders;
   vulkan::MemoryLedger ledger;
   vulkan::PipelineCache pipelines;
   vulkan::Recorder recorder;

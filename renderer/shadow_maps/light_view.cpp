@@ -101,11 +101,11 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const L
       tangent = 1.0;
     }
     const double half = tangent * widen;
-    for (const Axes& face_axes : axes) {
+    for (const Axes& face_axes : axes)
       view.faces.push_back(make_face(light.position, face_axes, half, half, true, map_size));
-    }
   }
-  // Casters tell where depth begins, and both: a surface is compared with what lies before it.
+  // Depth begins at the first box of either kind and ends at the last receiver: what lies behind it
+  // shadows nothing.
   double unused = -near;
   for (const shader::MapFace& face : view.faces) {
     for (const Bounds& box : fit.casters) extend_range(face, box, scene.origin(), near, unused);

@@ -9,9 +9,8 @@ Owned<VkBufferView> texel_view(Device& device, const std::string& name, const Bu
   const std::size_t limit = device.properties.limits.maxTexelBufferElements;
   const std::size_t texels = buffer.size() / texel_bytes;
   if (texels > limit)
-    throw unsupported("the scene has too many triangles for exact shadows on this device: " + name +
-                      " take " + std::to_string(texels) + " of at most " + std::to_string(limit) +
-                      " texels");
+    throw unsupported("the scene has too many triangles for this device: " + name + " take " +
+                      std::to_string(texels) + " of at most " + std::to_string(limit) + " texels");
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   info.buffer = buffer.handle();
   info.format = format;
