@@ -33,6 +33,8 @@ function numbers(record) {
     ["Missing shadow", significant(quality?.missing_shadow)],
     ["Frame time, median", cost?.frame_ms ? `${significant(cost.frame_ms.median)} ms` : "–"],
     ["Frame time, 95th percentile", cost?.frame_ms ? `${significant(cost.frame_ms.p95)} ms` : "–"],
+    ["Spread of repeats (half the quartiles' distance)",
+      cost?.frame_ms?.spread === undefined ? "–" : `${significant(100 * cost.frame_ms.spread)} %`],
     ["Memory over no shadows", bytes(cost?.memory?.over_none_bytes)],
   ].filter(([, value]) => value !== "–");
   return h("table", { class: "plain" }, h("caption", {}, "Numbers"),
