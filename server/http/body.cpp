@@ -8,9 +8,6 @@ namespace penumbra::server::http {
 namespace {
 
 constexpr std::size_t deepest = 64;
-/// Bytes beyond the limit that are read and dropped, so that a client that only sends, and reads
-/// later, still gets the answer.
-constexpr std::size_t patience = 16 << 20;
 
 bool valid_text(const std::string& text) {
   if (text.find('\0') != std::string::npos) return false;
@@ -20,14 +17,6 @@ bool valid_text(const std::string& text) {
   } catch (const nlohmann::json::exception&) {
     return false;
   }
-}
-
-std::optional<std::uint64_t> announced_length(const httplib::Request& request) {
-  const auto text = request.get_header_value("Content-Length");
-  std::uint64_t length = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), length);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return length;
 }
 
 void check_depth(const std::string& text) {
@@ -51,60 +40,24 @@ void check_depth(const std::string& text) {
 
 }  // namespace
 
-std::optional<Error> framing_error(const httplib::Request& request, bool bodiless) {
-  const auto lengths = request.get_header_value_count("Content-Length");
-  const auto encodings = request.get_header_value_count("Transfer-Encoding");
-  if (lengths > 1 || encodings > 1 || (lengths > 0 && encodings > 0))
-    return bad_value("Content-Length", "the length of the body is given more than once");
-  if (encodings == 1) {
-    auto encoding = request.get_header_value("Transfer-Encoding");
-    std::transform(encoding.begin(), encoding.end(), encoding.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (encoding != "chunked") return bad_value("Transfer-Encoding", "only chunked is known");
-    if (bodiless) return bad_value("body", "this method takes no body");
-  }
-  if (lengths == 1) {
-    const auto length = announced_length(request);
-    if (!length) return bad_value("Content-Length", "must be a number");
-    if (bodiless && *length > 0) return bad_value("body", "this method takes no body");
-  }
-  return std::nullopt;
-}
-
-bool has_body(const httplib::Request& request) {
-  if (request.has_header("Transfer-Encoding")) return true;
-  return request.has_header("Content-Length") && announced_length(request).value_or(1) > 0;
-}
-
-bool IncomingBody::receive(std::size_t limit, std::string* into) {
-  begun = true;
-  whole = (*reader)([&](const char* data, std::size_t length) {
-    size += length;
-    if (size <= limit && into != nullptr) into->append(data, length);
-    return size <= limit + patience;
-  });
-  return whole;
-}
-
-std::string IncomingBody::read(std::size_t limit) {
+std::string read_body(const httplib::Request& request, const httplib::ContentReader& reader,
+                      std::size_t limit) {
   std::string body;
-  if (reader == nullptr || !has_body(request)) return body;
+  const auto announced = request.get_header_value<std::uint64_t>("Content-Length");
+  if (announced == 0 && !request.has_header("Transfer-Encoding")) return body;
   const Error too_large("too_large", "at most " + std::to_string(limit) + " bytes", "body");
-  if (announced_length(request).value_or(0) > limit + patience) throw too_large;
+  if (announced > limit) throw too_large;
   // Multipart bodies would be taken apart by the library; nothing here takes them.
   if (request.is_multipart_form_data()) throw bad_value("Content-Type", "multipart is not taken");
-  receive(limit, &body);
+  std::size_t size = 0;
+  const bool whole = reader([&](const char* data, std::size_t length) {
+    size += length;
+    if (size <= limit) body.append(data, length);
+    return size <= limit;
+  });
   if (size > limit) throw too_large;
   if (!whole) throw bad_value("body", "the body cannot be read");
   return body;
-}
-
-bool IncomingBody::finish() {
-  if (reader == nullptr || !has_body(request)) return true;
-  if (begun) return whole;
-  if (announced_length(request).value_or(0) > patience || request.is_multipart_form_data())
-    return false;
-  return receive(0, nullptr);
 }
 
 void check_text(const httplib::Request& request) {

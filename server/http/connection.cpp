@@ -1,90 +1,124 @@
 #include "server/http/connection.h"
 
-#include <arpa/inet.h>
-#include <dirent.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
-#include <charconv>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <string>
+#include <array>
+#include <cerrno>
 
 namespace penumbra::server::http {
 namespace {
 
-/// Port of a socket address, -1 for other families.
-int port_of(const sockaddr_storage& address) {
-  if (address.ss_family == AF_INET)
-    return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
-  if (address.ss_family == AF_INET6)
-    return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
-  return -1;
-}
-
-std::string host_of(const sockaddr_storage& address) {
-  char text[INET6_ADDRSTRLEN] = {};
-  const void* bytes =
-      address.ss_family == AF_INET
-          ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in&>(address).sin_addr)
-          : static_cast<const void*>(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
-  return inet_ntop(address.ss_family, bytes, text, sizeof text) != nullptr ? text : "";
-}
-
-struct Ends {
-  sockaddr_storage here{};
-  sockaddr_storage there{};
-};
-
-/// Both ends of a connected socket; empty for any other descriptor.
-std::optional<Ends> ends_of(int descriptor) {
-  Ends ends;
-  socklen_t here_size = sizeof ends.here;
-  socklen_t there_size = sizeof ends.there;
-  if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&ends.there), &there_size) != 0 ||
-      ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&ends.here), &here_size) != 0)
-    return std::nullopt;
-  return ends;
-}
-
-/// Calls `take(descriptor, ends)` for the process's connections until it returns true.
-template <class Take>
-void each_connection(Take take) {
-  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir("/proc/self/fd"), &::closedir);
-  if (!folder) return;
-  while (const auto* entry = ::readdir(folder.get())) {
-    int descriptor = -1;
-    std::from_chars(entry->d_name, entry->d_name + std::strlen(entry->d_name), descriptor);
-    if (descriptor < 0) continue;
-    const auto ends = ends_of(descriptor);
-    if (ends && take(descriptor, *ends)) return;
-  }
-}
+constexpr std::size_t block = 16 << 10;         // bytes received at once
+constexpr std::size_t most_blocks = 8;          // before others have their turn
+constexpr std::size_t most_dropped = 64 << 20;  // bytes of a refused client that are read
+constexpr std::size_t unjudged = 4096;          // bytes of one line before it is looked at again
 
 }  // namespace
 
-Connection::Connection(const httplib::Request& request) {
-  each_connection([&](int candidate, const Ends& ends) {
-    if (port_of(ends.there) != request.remote_port || port_of(ends.here) != request.local_port ||
-        host_of(ends.there) != request.remote_addr)
-      return false;
-    descriptor = candidate;
-    return true;
-  });
+Connection::Connection(int descriptor_, const ConnectionLimits& limits_)
+    : descriptor(descriptor_), limits(limits_), since(Clock::now()), due(since + limits.head) {}
+
+Connection::~Connection() {
+  ::close(descriptor);
 }
 
-bool Connection::closed_by_peer() const {
-  if (descriptor < 0) return false;
-  char byte = 0;
-  return ::recv(descriptor, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+Connection::State Connection::receive(std::span<const std::string> methods) {
+  auto state = judge(methods);  // of what came behind the last request
+  for (std::size_t i = 0; state == State::waiting && i < most_blocks; ++i) {
+    std::array<char, block> bytes;
+    const auto count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::waiting;
+    if (count <= 0) return State::gone;
+    if (input.empty()) {
+      since = Clock::now();
+      due = since + limits.head;
+    }
+    input.append(bytes.data(), static_cast<std::size_t>(count));
+    state = judge(methods);
+  }
+  return state;
 }
 
-void shut_reading(int port) {
-  each_connection([&](int descriptor, const Ends& ends) {
-    if (port_of(ends.here) == port) ::shutdown(descriptor, SHUT_RD);
-    return false;
-  });
+Connection::State Connection::judge(std::span<const std::string> methods) {
+  if (refused) return State::refused;
+  if (!whole_head) {
+    // A line that comes byte by byte is not read anew for each of them.
+    const bool new_line = input.find('\n', judged) != std::string::npos;
+    if (!new_line && input.size() < judged + unjudged) return State::waiting;
+    judged = input.size();
+    try {
+      whole_head = read_head(input, methods, head);
+    } catch (const Error& error) {
+      return refuse(error);
+    }
+    if (!whole_head) return State::waiting;
+    framing = BodyFraming(head);
+    framed = head.size;
+    since = Clock::now();
+  }
+  framed += framing.take(std::string_view(input).substr(framed));
+  if (framing.broken()) return refuse(bad_value("body", "its chunks cannot be read"));
+  if (framing.done()) return State::ready;
+  if (head.content_length > limits.buffered_body || framed - head.size > limits.buffered_body)
+    return State::ready;
+  const std::chrono::duration<double> time(static_cast<double>(framed) / limits.least_rate);
+  due = since + limits.patience + std::chrono::duration_cast<Clock::duration>(time);
+  tell_to_continue();
+  return State::waiting;
+}
+
+Connection::State Connection::refuse(const Error& error) {
+  refused = error;
+  return State::refused;
+}
+
+void Connection::tell_to_continue() {
+  if (!head.expects_continue || continued) return;
+  continued = true;
+  constexpr std::string_view text = "HTTP/1.1 100 Continue\r\n\r\n";
+  // So few bytes find room, or the client is gone, which the next look at the socket shows.
+  [[maybe_unused]] const auto sent =
+      ::send(descriptor, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void Connection::next() {
+  input.erase(0, framed);
+  judged = 0;
+  framed = 0;
+  whole_head = false;
+  continued = false;
+  since = Clock::now();
+  due = since + (input.empty() ? limits.idle : limits.head);
+}
+
+void Connection::part(const std::string& answer) {
+  std::size_t sent = 0;
+  while (sent < answer.size()) {
+    const auto count =
+        ::send(descriptor, answer.data() + sent, answer.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count <= 0) break;  // a client that reads nothing needs no reason
+    sent += static_cast<std::size_t>(count);
+  }
+  // Closing at once would reset the connection where bytes are unread, and lose the answer.
+  ::shutdown(descriptor, SHUT_WR);
+  leaving = true;
+  input = {};
+  since = Clock::now();
+  due = since + limits.farewell;
+}
+
+bool Connection::drop_rest() {
+  std::array<char, block> bytes;
+  while (dropped < most_dropped) {
+    const auto count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+    if (count == 0) return false;
+    dropped += static_cast<std::size_t>(count);
+  }
+  return false;
 }
 
 }  // namespace penumbra::server::http

@@ -4,9 +4,9 @@
 #include <chrono>
 
 #include "server/http/body.h"
-#include "server/http/connection.h"
 #include "server/http/event_stream.h"
 #include "server/http/reply.h"
+#include "server/http/request_stream.h"
 #include "server/http/service.h"
 
 namespace penumbra::server::http {
@@ -107,7 +107,7 @@ RenderRecord submit(Call& call, const nlohmann::json& request) {
 RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  const Connection connection(call.request);
+  const auto& connection = RequestStream::current();
   RenderRecord seen = record;
   while (!is_over(seen)) {
     const double left = std::chrono::duration<double>(end - Clock::now()).count();

@@ -25,8 +25,9 @@ int status_of(const std::string& code) {
       {"bad_value", 400},   {"unauthorized", 401}, {"forbidden", 403}, {"not_found", 404},
       {"not_allowed", 405}, {"conflict", 409},     {"cancelled", 409}, {"too_large", 413},
       {"unsupported", 422}, {"unreadable", 422},   {"too_many", 429},  {"too_many_headers", 431},
-      {"device", 500},      {"internal", 500},     {"busy", 503},      {"storage", 503},
-      {"draining", 503},    {"worker", 503},       {"deadline", 504},
+      {"too_long", 414},    {"too_slow", 408},     {"device", 500},    {"internal", 500},
+      {"busy", 503},        {"storage", 503},      {"draining", 503},  {"worker", 503},
+      {"deadline", 504},
   };
   const auto found = states.find(code);
   return found == states.end() ? 500 : found->second;
@@ -46,17 +47,33 @@ void send_error(httplib::Response& response, const Error& error) {
   response.set_content(text_of(error_body(error)), "application/json");
 }
 
-void send_error_and_close(httplib::Response& response, const Error& error) {
-  set_error_headers(response, error);
+void set_security_headers(httplib::Response& response) {
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("X-Frame-Options", "DENY");
+  response.set_header("Referrer-Policy", "no-referrer");
+  response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+  response.set_header("Cross-Origin-Opener-Policy", "same-origin");
+  // For every answer: an error page or a file opened by itself runs nothing either.
+  response.set_header("Content-Security-Policy",
+                      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
+                      "blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; "
+                      "frame-ancestors 'none'");
+  if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "no-store");
+}
+
+std::string refusal_text(const Error& error, const std::vector<std::string>& methods,
+                         bool with_body) {
+  httplib::Response response;
+  send_error(response, error);
+  set_security_headers(response);
   response.set_header("Connection", "close");
-  // The library closes after a body whose provider gave up; the last chunk was sent by then.
-  response.set_chunked_content_provider(
-      "application/json",
-      [text = text_of(error_body(error))](std::size_t, httplib::DataSink& sink) {
-        sink.write(text.data(), text.size());
-        sink.done();
-        return false;
-      });
+  response.set_header("Content-Length", std::to_string(response.body.size()));
+  std::string allowed;
+  for (const auto& method : methods) allowed += (allowed.empty() ? "" : ", ") + method;
+  if (response.status == 405) response.set_header("Allow", allowed);
+  std::string text = "HTTP/1.1 " + std::to_string(response.status) + " Refused\r\n";
+  for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
+  return text + "\r\n" + (with_body ? response.body : "");
 }
 
 Error error_of(std::exception_ptr failure) {

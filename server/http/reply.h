@@ -3,6 +3,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "renderer/error.h"
 
@@ -23,9 +24,13 @@ void send_json(httplib::Response& response, int status, const nlohmann::json& bo
 /// Error body, state, and Retry-After where trying again helps.
 void send_error(httplib::Response& response, const Error& error);
 
-/// Like send_error, then closes the connection: for requests whose body was not read, since what is
-/// left of it would be taken for the next request.
-void send_error_and_close(httplib::Response& response, const Error& error);
+/// Headers of every answer: what browsers may do with it, and that it is not kept.
+void set_security_headers(httplib::Response& response);
+
+/// A whole answer as it goes out, for a request that is refused before it is read. The connection
+/// ends after it. `methods` are named where the method was wrong.
+std::string refusal_text(const Error& error, const std::vector<std::string>& methods,
+                         bool with_body);
 
 /// What is answered for an exception that reached the edge of a request; unknown ones are logged.
 Error error_of(std::exception_ptr failure);

@@ -4,17 +4,18 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 
 #include "server/http/body.h"
 #include "server/http/guard.h"
 #include "server/http/reply.h"
+#include "server/http/request_head.h"
 #include "server/http/service.h"
 
 namespace penumbra::server::http {
 namespace {
 
 constexpr std::size_t longest_path = 1024;
-constexpr std::size_t most_headers = 100;
 
 std::vector<std::string_view> segments(std::string_view path) {
   std::vector<std::string_view> parts;
@@ -41,20 +42,6 @@ std::optional<std::map<std::string, std::string>> values_of(
   return values;
 }
 
-void set_security_headers(httplib::Response& response) {
-  response.set_header("X-Content-Type-Options", "nosniff");
-  response.set_header("X-Frame-Options", "DENY");
-  response.set_header("Referrer-Policy", "no-referrer");
-  response.set_header("Cross-Origin-Resource-Policy", "same-origin");
-  response.set_header("Cross-Origin-Opener-Policy", "same-origin");
-  // For every answer: an error page or a file opened by itself runs nothing either.
-  response.set_header("Content-Security-Policy",
-                      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
-                      "blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; "
-                      "frame-ancestors 'none'");
-  if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "no-store");
-}
-
 /// The route's path stands in the log, never the request's: paths hold tokens.
 void log_call(const Call& call, const Match& found, double ms) {
   spdlog::info("{} {} {} {:.1f} ms", call.request.method,
@@ -67,24 +54,19 @@ void answer(Service& service, const httplib::Request& request, httplib::Response
   const auto start = std::chrono::steady_clock::now();
   Call call{service, request, response};
   Match found = match(request.method, request.path);
-  IncomingBody body(request, reader);
   try {
     check_text(request);
     if (found.route == nullptr) {
-      if (found.allowed.empty()) throw nothing_here();
+      if (found.allowed.empty() || request.path.size() > longest_path) throw nothing_here();
       response.set_header("Allow", found.allowed);
       throw Error("not_allowed", "allowed here: " + found.allowed, "");
     }
     call.path = std::move(found.path);
     check_permission(service, *found.route, request);
-    call.body = body.read(found.route->largest_body);
+    if (reader != nullptr) call.body = read_body(request, *reader, found.route->largest_body);
     found.route->handle(call);
   } catch (...) {
-    const Error error = error_of(std::current_exception());
-    if (body.finish())
-      send_error(response, error);
-    else
-      send_error_and_close(response, error);
+    send_error(response, error_of(std::current_exception()));
   }
   set_security_headers(response);
   const std::chrono::duration<double, std::milli> elapsed =
@@ -92,28 +74,6 @@ void answer(Service& service, const httplib::Request& request, httplib::Response
   service.metrics.count(found.route != nullptr ? found.route->path : "", response.status,
                         elapsed.count());
   log_call(call, found, elapsed.count());
-}
-
-using Verdict = httplib::Server::HandlerResponse;
-
-/// Requests without a body are answered here, before the library tries its patterns; for the others
-/// it has yet to hand out the body.
-Verdict before_routing(Service& service, const httplib::Request& request,
-                       httplib::Response& response) {
-  const bool bodiless = request.method == "GET" || request.method == "HEAD";
-  std::optional<Error> refused = framing_error(request, bodiless);
-  if (!refused && request.path.size() > longest_path) refused = nothing_here();
-  if (!refused && request.headers.size() > most_headers)
-    refused =
-        Error("too_many_headers", "at most " + std::to_string(most_headers) + " header fields");
-  if (refused) {
-    send_error_and_close(response, *refused);
-    set_security_headers(response);
-    return Verdict::Handled;
-  }
-  if (!bodiless) return Verdict::Unhandled;
-  answer(service, request, response, nullptr);
-  return Verdict::Handled;
 }
 
 }  // namespace
@@ -162,9 +122,19 @@ Match match(std::string_view method, std::string_view path) {
   return found;
 }
 
+std::vector<std::string> methods_of_routes() {
+  std::set<std::string> methods{"HEAD"};
+  for (const auto& route : routes()) methods.insert(route.method);
+  return {methods.begin(), methods.end()};
+}
+
 void install(httplib::Server& server, Service& service) {
+  // Requests without a body are answered here, before the library tries its patterns; for the
+  // others it has yet to hand out the body.
   server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
-    return before_routing(service, request, response);
+    if (may_have_body(request.method)) return httplib::Server::HandlerResponse::Unhandled;
+    answer(service, request, response, nullptr);
+    return httplib::Server::HandlerResponse::Handled;
   });
   const auto with_body = [&](const httplib::Request& request, httplib::Response& response,
                              const httplib::ContentReader& reader) {
@@ -174,10 +144,9 @@ void install(httplib::Server& server, Service& service) {
   server.Post(anything, with_body);
   server.Put(anything, with_body);
   server.Delete(anything, with_body);
-  server.Patch(anything, with_body);
   server.set_error_handler([](const httplib::Request&, httplib::Response& response) {
     if (response.has_header("Content-Type") || response.status == 304) return;
-    // The library answers by itself what it could not parse or knows no method for.
+    // The library answers by itself what it could not parse.
     const Error error = response.status >= 500   ? Error("internal", "the server failed")
                         : response.status == 404 ? nothing_here()
                                                  : bad_value("", "the request cannot be read");

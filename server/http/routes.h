@@ -65,6 +65,9 @@ struct Match {
 };
 Match match(std::string_view method, std::string_view path);
 
+/// Methods that some route takes, and HEAD.
+std::vector<std::string> methods_of_routes();
+
 /// Makes the server answer the table's routes, and everything else with the uniform 404.
 void install(httplib::Server& server, Service& service);
 

@@ -1,12 +1,12 @@
 #include "server/http/serve.h"
 
 #include <httplib.h>
-#include <netinet/in.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -15,47 +15,38 @@
 #include <thread>
 
 #include "renderer/error.h"
-#include "server/http/connection.h"
+#include "server/http/listener.h"
 #include "server/http/operations.h"
 #include "server/http/reply.h"
 #include "server/http/routes.h"
 #include "server/http/service.h"
-#include "server/http/task_queue.h"
 
 namespace penumbra::server::http {
 namespace {
 
-constexpr std::size_t most_connections = 600;  // served at once; more wait for their turn
+constexpr std::size_t most_connections = 4096;
+constexpr std::size_t most_requests = 512;  // answered at once; more wait for their turn
+/// The other port is for one or two programs that watch.
+constexpr std::size_t most_watchers = 64;
+constexpr std::size_t watching_threads = 8;
 
-/// The library listens with a queue of five connections and lets two processes share a port.
-class Listener : public httplib::Server {
- public:
-  int bind(const std::string& host, int port, const char* field) {
-    set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-    const int bound = port == 0 ? bind_to_any_port(host) : bind_to_port(host, port) ? port : -1;
-    if (bound <= 0)
-      throw Error("conflict", "cannot listen on " + host + ":" + std::to_string(port), field);
-    ::listen(svr_sock_, SOMAXCONN);
-    return bound;
-  }
-
-  void start() {
-    thread = std::thread([this] { listen_after_bind(); });
-    while (!is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-
-  /// Accepts nothing new and waits for what runs.
-  void finish() {
-    stop();
-    if (thread.joinable()) thread.join();
-  }
-
- private:
-  std::thread thread;
-};
+ListenerOptions listener_options(Service& service, std::size_t threads, std::size_t connections,
+                                 std::vector<std::string> methods) {
+  // Files and workers need descriptors too.
+  rlimit descriptors{};
+  ::getrlimit(RLIMIT_NOFILE, &descriptors);
+  const auto most = std::max<rlim_t>(descriptors.rlim_cur / 2, 16);
+  ListenerOptions options;
+  options.threads = threads;
+  options.connections = std::min<std::size_t>(connections, most);
+  options.refusal = [&service, methods](const Error& error, bool with_body) {
+    service.metrics.count("", status_of(error.code), 0.0);
+    spdlog::info("(not read) {} {}", status_of(error.code), error.what());
+    return refusal_text(error, methods, with_body);
+  };
+  options.methods = std::move(methods);
+  return options;
+}
 
 }  // namespace
 
@@ -68,13 +59,9 @@ struct Server::State {
   bool started = false;
 
   State(const ServeOptions& options, const MakeRenderService& make_renders)
-      : service(options, make_renders) {
-    api.new_task_queue = [] { return new ElasticTaskQueue(most_connections); };
-    api.set_keep_alive_max_count(100000);
-    api.set_keep_alive_timeout(15);
-    api.set_read_timeout(10);
-    api.set_write_timeout(20);
-    api.set_tcp_nodelay(true);
+      : service(options, make_renders),
+        api(listener_options(service, most_requests, most_connections, methods_of_routes())),
+        operations(listener_options(service, watching_threads, most_watchers, {"GET", "HEAD"})) {
     install(api, service);
     install_operations(operations, service);
     api_port = api.bind(options.host, options.port, "port");
@@ -107,9 +94,6 @@ bool Server::stop(double deadline_s) {
   state->service.sweeps.stop();
   auto renders = std::async(std::launch::async, [&] { state->service.renders->drain(deadline_s); });
   auto finished = std::async(std::launch::async, [&] { state->api.finish(); });
-  // Connections that stay open without a request would be waited for as long as they may idle.
-  if (finished.wait_for(std::chrono::seconds(1)) != std::future_status::ready)
-    shut_reading(state->api_port);
   const bool all =
       finished.wait_for(std::chrono::duration<double>(deadline_s)) == std::future_status::ready;
   finished.get();
