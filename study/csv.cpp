@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "figures/text.h"
 #include "renderer/error.h"
 
 namespace penumbra::study {
@@ -12,33 +13,10 @@ Error at_line(std::size_t line, const std::string& message) {
   return unreadable("line " + std::to_string(line) + ": " + message);
 }
 
-/// Length of the UTF-8 sequence that begins here, 0 where it is none (RFC 3629: shortest form, no
-/// surrogates, at most U+10FFFF).
-std::size_t sequence_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    if (!follows(1) || !follows(2)) return 0;
-    if (first == 0xE0 && byte(1) < 0xA0) return 0;
-    return first == 0xED && byte(1) > 0x9F ? 0 : 3;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    if (!follows(1) || !follows(2) || !follows(3)) return 0;
-    if (first == 0xF0 && byte(1) < 0x90) return 0;
-    return first == 0xF4 && byte(1) > 0x8F ? 0 : 4;
-  }
-  return 0;
-}
-
 void check_utf8(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {
-    const std::size_t length = sequence_length(text.substr(at));
+    const std::size_t length = figures::utf8_length(text.substr(at));
     if (length == 0) {
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
       throw at_line(static_cast<std::size_t>(line), "not UTF-8");

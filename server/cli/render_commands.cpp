@@ -10,6 +10,7 @@
 #include "server/cli/request_options.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
+#include "server/cli/written_file.h"
 #include "techniques/parameter_schema.h"
 
 namespace penumbra::server::cli {
@@ -50,13 +51,6 @@ void check_out(const fs::path& path, const std::string& diagnostic) {
   for (const auto& [extension, file] : out_formats())
     if (diagnostic.empty() || file != want::linear) allowed.push_back(extension);
   check_extension(path, "out", allowed);
-}
-
-void write_file(const fs::path& path, const std::string& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw Error("unwritable", "cannot write " + path.string());
 }
 
 std::set<std::string> wanted_files(const RenderOptions& options) {

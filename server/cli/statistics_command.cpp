@@ -1,9 +1,10 @@
 #include <filesystem>
-#include <fstream>
 
 #include "renderer/error.h"
 #include "server/cli/session.h"
+#include "server/cli/written_file.h"
 #include "server/jobs/durable_file.h"
+#include "study/figures.h"
 #include "study/responses.h"
 #include "study/statistics/report.h"
 
@@ -12,23 +13,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw Error("unwritable", "cannot write " + path.string());
+struct Options {
+  fs::path responses;
+  fs::path measures;
+  fs::path out;
+};
+
+std::string text_of(const fs::path& path, const char* field) {
+  auto text = read_whole(path);
+  if (!text) throw unreadable("cannot read " + path.string(), field);
+  return std::move(*text);
 }
 
-int analyse(const Session& session, const fs::path& responses, const fs::path& out) {
-  const auto text = read_whole(responses);
-  if (!text) throw unreadable("cannot read " + responses.string(), "RESPONSES");
+int analyse(const Session& session, const Options& paths) {
+  const auto text = text_of(paths.responses, "RESPONSES");
+  study::FigureOptions figures;
+  if (!paths.measures.empty())
+    figures.measures = study::parse_measures(text_of(paths.measures, "--measures"));
   const study::ReportOptions options;
-  const nlohmann::json report = study::statistics_report(study::parse_responses(*text), options);
+  const nlohmann::json report = study::statistics_report(study::parse_responses(text), options);
   const std::string table = study::statistics_table(report, options);
-  if (!out.empty()) {
-    fs::create_directories(out);
-    write_text(out / "results.json", report.dump(2) + "\n");
-    write_text(out / "tables.txt", table);
+  if (!paths.out.empty()) {
+    fs::create_directories(paths.out / "figures");
+    write_file(paths.out / "results.json", report.dump(2) + "\n");
+    write_file(paths.out / "tables.txt", table);
+    for (const auto& figure : study::figures_of(report, figures))
+      write_file(paths.out / "figures" / (figure.name + ".svg"), figure.svg);
   }
   session.print(report, table);
   return 0;
@@ -37,21 +47,20 @@ int analyse(const Session& session, const fs::path& responses, const fs::path& o
 }  // namespace
 
 void add_statistics_command(CLI::App& app, Session& session) {
-  struct Options {
-    fs::path responses;
-    fs::path out;
-  };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("statistics", "Analyse the answers to a ranking survey");
   command->add_option("RESPONSES", options->responses, "CSV with a row per picture ranked")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_option("--out", options->out, "Folder for results.json and tables.txt");
+  command
+      ->add_option("--measures", options->measures,
+                   "CSV with what was measured of the pictures (scene, technique, frame_ms_median, "
+                   "rms_y, flip, ...), as a sweep writes it")
+      ->check(CLI::ExistingFile);
+  command->add_option("--out", options->out, "Folder for results.json, tables.txt and figures");
   add_json_flag(*command, session);
   command->callback([options, &session] {
-    session.action = [options, &session] {
-      return analyse(session, options->responses, options->out);
-    };
+    session.action = [options, &session] { return analyse(session, *options); };
   });
 }
 

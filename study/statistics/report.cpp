@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "study/statistics/analysis.h"
+#include "study/statistics/histograms.h"
 #include "study/statistics/screening.h"
 #include "study/statistics/survey_data.h"
 #include "study/statistics/worths.h"
@@ -59,7 +60,10 @@ Selection inverted_turned(const SurveyData& data, const std::vector<Flag>& flags
 
 json analyse_part(const SurveyData& data, const Selection& selection,
                   std::optional<std::size_t> scene, double alpha) {
-  json part = statistics::analyse(data, participant_table(data, selection, scene), alpha);
+  const auto table = participant_table(data, selection, scene);
+  json part = statistics::analyse(data, table, alpha);
+  statistics::add_histograms(part, data, selection, scene);
+  part["critical_difference"] = statistics::critical_difference(data, table, alpha);
   std::vector<std::string> techniques;
   for (const json& row : part["techniques"]) techniques.push_back(row["technique"]);
   part["plackett_luce"] = statistics::worths_json(data, selection, scene, techniques);

@@ -66,22 +66,22 @@ class CliqueSearch {
   std::vector<Set> found;
 };
 
-std::string letter(std::size_t index) {
-  if (index < 26) return std::string(1, static_cast<char>('a' + index));
-  if (index < 52) return std::string(1, static_cast<char>('A' + (index - 26)));
-  return "(" + std::to_string(index + 1) + ")";
-}
-
 }  // namespace
 
 std::vector<Set> maximal_cliques(const std::vector<std::vector<bool>>& different) {
   return CliqueSearch(different).run();
 }
 
+std::string subset_letter(std::size_t index) {
+  if (index < 26) return std::string(1, static_cast<char>('a' + index));
+  if (index < 52) return std::string(1, static_cast<char>('A' + (index - 26)));
+  return "(" + std::to_string(index + 1) + ")";
+}
+
 std::vector<std::string> compact_letters(const std::vector<Set>& subsets, std::size_t treatments) {
   std::vector<std::string> letters(treatments);
   for (std::size_t i = 0; i < subsets.size(); ++i) {
-    for (const std::size_t member : subsets[i]) letters.at(member) += letter(i);
+    for (const std::size_t member : subsets[i]) letters.at(member) += subset_letter(i);
   }
   return letters;
 }

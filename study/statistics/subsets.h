@@ -13,8 +13,10 @@ namespace penumbra::study::statistics {
 std::vector<std::vector<std::size_t>> maximal_cliques(
     const std::vector<std::vector<bool>>& different);
 
-/// Compact letters: treatments share a letter exactly where they share a subset. The first subset
-/// is "a"; beyond "Z" letters become (53), (54), ...
+/// Letter of the i-th subset: "a" to "z", "A" to "Z", then (53), (54), ...
+std::string subset_letter(std::size_t index);
+
+/// Compact letters: treatments share a letter exactly where they share a subset.
 std::vector<std::string> compact_letters(const std::vector<std::vector<std::size_t>>& subsets,
                                          std::size_t treatments);
 
