@@ -81,6 +81,14 @@ json light_value(const std::string& text) {
   return value.is_discarded() ? json(text) : value;
 }
 
+/// Entry of an object, made where it is not there yet. Where a value stands instead of the object,
+/// the entry was given as a whole and in part.
+json& entry_of(json& place, const std::string& key, const std::string& field) {
+  if (!place.is_null() && !place.is_object())
+    throw bad_value(field, field + " is given twice: as a whole and in part");
+  return place[key];
+}
+
 }  // namespace
 
 void add_light_override(json& request, const std::string& path, const std::string& value) {
@@ -94,11 +102,10 @@ void add_light_override(json& request, const std::string& path, const std::strin
   std::size_t begin = dot + 1;
   for (std::size_t end = path.find('.', begin); end != std::string::npos;
        begin = end + 1, end = path.find('.', begin))
-    place = &(*place)[path.substr(begin, end - begin)];
-  const std::string key = path.substr(begin);
-  if (place->is_structured() ? place->contains(key) : !place->is_null())
-    throw bad_value(field, field + " is given twice");
-  (*place)[key] = light_value(value);
+    place = &entry_of(*place, path.substr(begin, end - begin), field);
+  json& entry = entry_of(*place, path.substr(begin), field);
+  if (!entry.is_null()) throw bad_value(field, field + " is given twice");
+  entry = light_value(value);
 }
 
 json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries) {

@@ -174,6 +174,8 @@ TEST(RequestFromText, refuses_what_is_no_number_and_what_is_given_twice) {
   EXPECT_EQ(field({{"width", "1"}, {"width", "2"}}), "width");
   EXPECT_EQ(field({{"bias", "1"}, {"bias", "2"}}), "bias");
   EXPECT_EQ(field({{"light.key", "1"}}), "lights.key");
+  for (const char* whole : {"1", "[1]", "a word", "{\"b\": 1}"})
+    EXPECT_EQ(field({{"light.key.a", whole}, {"light.key.a.b", "2"}}), "lights.key.a.b") << whole;
 }
 
 TEST(Digest, is_sha_256) {
