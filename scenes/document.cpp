@@ -9,8 +9,10 @@
 #include "scenes/generators/solid.h"
 #include "scenes/generators/textures.h"
 #include "scenes/import/import.h"
+#include "scenes/import/side_files.h"
 #include "scenes/json_reader.h"
 #include "scenes/picture_io.h"
+#include "scenes/text.h"
 
 namespace penumbra::scenes {
 namespace {
@@ -40,11 +42,13 @@ fs::path file_of(JsonReader& reader, const fs::path& folder) {
   const fs::path file = resolve_inside(folder, name, reader.path_of("file"));
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored))
-    reader.fail("file", "names no file beside the scene: '" + name + "'");
+    reader.fail("file", "names no file beside the scene: " + in_quotes(name));
   return file;
 }
 
-Texture read_texture(const json& value, const std::string& path, const fs::path& folder) {
+/// `most_bytes` is what its texels may take.
+Texture read_texture(const json& value, const std::string& path, const fs::path& folder,
+                     std::uint64_t most_bytes) {
   JsonReader reader(value, path);
   std::string name;
   reader.text("name", name);
@@ -59,15 +63,18 @@ Texture read_texture(const json& value, const std::string& path, const fs::path&
       reader.text("generator", generator);
       reader.integer("size", size, 1, 4096);
       reader.integer("seed", seed, 0, 0xffffffff);
+      if (static_cast<std::uint64_t>(size * size * 4) > most_bytes)
+        throw unreadable("it takes more than the " + std::to_string(most_bytes >> 20) +
+                         " MiB that are left for the scene's textures");
       texture = generate_texture(generator, static_cast<std::uint32_t>(size),
                                  static_cast<std::uint32_t>(seed));
     } else if (reader.has("file")) {
-      take(read_picture(file_of(reader, folder)));
+      take(decode_picture(read_bytes(file_of(reader, folder)), most_bytes));
     } else {
       std::string text;
       reader.at("png");
       reader.text("png", text);
-      take(decode_picture(base64_decode(text, reader.path_of("png"))));
+      take(decode_picture(base64_decode(text, reader.path_of("png")), most_bytes));
     }
   } catch (const Error& error) {
     throw unreadable(path + ": " + error.what(),
@@ -137,10 +144,14 @@ void add_model(const json& value, const std::string& path, const fs::path& folde
   bool casts_shadow = true;
   reader.boolean("casts_shadow", casts_shadow);
   reader.finish();
-  const bool obj = file.extension() == ".obj";
-  if (!obj && file.extension() != ".gltf" && file.extension() != ".glb")
+  const std::string extension = lower_extension(file);
+  const bool obj = extension == ".obj";
+  if (!obj && extension != ".gltf" && extension != ".glb")
     reader.fail("file", "must end in .gltf, .glb or .obj");
   Scene model = obj ? import_obj(file, false) : import_gltf(file, false);
+  if (texture_bytes(model) > max_texture_bytes - texture_bytes(scene))
+    reader.fail("file", "has too many textures: those of a scene may take 1 GiB together");
+  for (const std::string& note : model.notes) scene.notes.push_back(path + ": " + note);
   const auto textures = static_cast<int>(scene.textures.size());
   const auto materials = static_cast<std::uint32_t>(scene.materials.size());
   const auto meshes = static_cast<std::uint32_t>(scene.meshes.size());
@@ -193,11 +204,15 @@ json parse_json(const std::string& text, const std::string& name) {
   try {
     return json::parse(text);
   } catch (const json::exception& error) {
-    throw unreadable(name + " is no JSON: " + error.what());
+    // Names in older encodings are common and harmless: their bytes are replaced.
+    const std::string repaired = valid_text(text);
+    if (repaired != text) return parse_json(repaired, name);
+    throw unreadable(name + " is no JSON: " + shortened(error.what()));
   }
 }
 
-Scene read_document(const json& document, const fs::path& folder) {
+Scene read_document(const json& document, const fs::path& folder,
+                    std::uint64_t most_texture_bytes) {
   JsonReader reader(document, "");
   std::int64_t version = 0;
   reader.at("penumbra_scene");
@@ -207,7 +222,8 @@ Scene read_document(const json& document, const fs::path& folder) {
   reader.text("title", scene.title);
   const json& textures = list_of(reader, "textures");
   for (std::size_t i = 0; i < textures.size(); ++i)
-    scene.textures.push_back(read_texture(textures[i], at_index("textures", i), folder));
+    scene.textures.push_back(read_texture(textures[i], at_index("textures", i), folder,
+                                          most_texture_bytes - texture_bytes(scene)));
   const json& materials = list_of(reader, "materials");
   for (std::size_t i = 0; i < materials.size(); ++i) {
     json value = materials[i];
@@ -237,7 +253,8 @@ Scene read_document(const json& document, const fs::path& folder) {
   check_named(scene.lights, "lights");
   check_named(scene.cameras, "cameras");
   json surroundings = json::object();
-  for (const char* key : {"receivers", "shadow_planes", "ambient", "background_low", "background_high", "exposure"})
+  for (const char* key :
+       {"receivers", "shadow_planes", "ambient", "background_low", "background_high", "exposure"})
     if (reader.has(key)) surroundings[key] = reader.at(key);
   read_surroundings(surroundings, "", scene);
   reader.finish();

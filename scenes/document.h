@@ -6,6 +6,7 @@
 #include <string>
 
 #include "renderer/scene/scene.h"
+#include "scenes/import/side_files.h"
 
 namespace penumbra::scenes {
 
@@ -15,8 +16,10 @@ namespace penumbra::scenes {
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
 /// The scene a document describes; files it names are looked up in `folder` and nowhere above it
-/// (an empty folder: it may name none). Throws unreadable naming the path in the document.
-Scene read_document(const nlohmann::json& document, const std::filesystem::path& folder);
+/// (an empty folder: it may name none). Throws unreadable naming the path in the document, also of
+/// the first texture with which they take more than `most_texture_bytes` decoded.
+Scene read_document(const nlohmann::json& document, const std::filesystem::path& folder,
+                    std::uint64_t most_texture_bytes = max_texture_bytes);
 
 /// Complete document of a scene: read back it has the same content hash. Textures are kept as PNG.
 nlohmann::json write_document(const Scene& scene);

@@ -94,7 +94,7 @@ void read_light(const json& value, const std::string& path, Light& light) {
     light.up = std::abs(light.direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   }
   reader.color("color", light.color);
-  reader.number("intensity", light.intensity, 0.0, 1e9);
+  reader.number("intensity", light.intensity, 0.0, max_intensity);
   reader.choice("attenuation", light.attenuation, attenuations);
   reader.number("outer_angle", light.outer_angle, 1e-3, 89.9);
   light.inner_angle = std::min(light.inner_angle, light.outer_angle);

@@ -170,6 +170,7 @@ json extras_of(const Scene& scene) {
     extras["materials"].push_back(write_material(material));
   for (const Instance& instance : scene.instances)
     extras["casts_shadow"].push_back(instance.casts_shadow);
+  if (!scene.notes.empty()) extras["notes"] = scene.notes;
   return {{"penumbra", extras}};
 }
 

@@ -90,7 +90,7 @@ void JsonReader::vector(const std::string& key, glm::dvec3& out, double low, dou
 
 void JsonReader::color(const std::string& key, glm::vec3& out) {
   glm::dvec3 precise(out);
-  vector(key, precise, 0.0, 1e6);
+  vector(key, precise, 0.0, max_intensity);
   if (has(key)) out = glm::vec3(precise);
 }
 

@@ -30,7 +30,7 @@ class JsonReader {
   void text(const std::string& key, std::string& out);
   void vector(const std::string& key, glm::dvec2& out, double low, double high);
   void vector(const std::string& key, glm::dvec3& out, double low, double high);
-  void color(const std::string& key, glm::vec3& out);  ///< linear, components 0..1e6
+  void color(const std::string& key, glm::vec3& out);  ///< linear, components 0..1e30
 
   /// One of the names; `out` becomes its enumerator.
   template <class T>
@@ -64,5 +64,8 @@ std::vector<double> read_numbers(const nlohmann::json& value, const std::string&
 
 /// Largest coordinate that a scene may have, metres: beyond it squares overflow a float.
 constexpr double max_coordinate = 1e15;
+
+/// Brightest a light may be: with it a lamp at any allowed distance lights what it may.
+constexpr double max_intensity = 1e30;
 
 }  // namespace penumbra::scenes

@@ -8,23 +8,80 @@
 #include "scenes/built_in/built_in.h"
 #include "scenes/document.h"
 #include "scenes/import/import.h"
+#include "scenes/text.h"
 
 namespace penumbra::scenes {
 namespace fs = std::filesystem;
 namespace {
-
-std::string lower_extension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool is_scene_file(const fs::path& file) {
   const std::string extension = lower_extension(file);
   return extension == ".gltf" || extension == ".glb" || extension == ".obj" || extension == ".json";
 }
 
+/// A message about a file is at most so long, bytes: it may quote what the file says.
+constexpr std::size_t longest_message = 500;
+
+/// A scene that was kept brings its notes along.
+void add_once(std::vector<std::string>& notes, const std::string& note) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
+/// Every text that a file brought as UTF-8.
+void repair_texts(Scene& scene) {
+  for (std::string* text : {&scene.id, &scene.title}) *text = valid_text(*text);
+  const auto repair = [](auto& list) {
+    for (auto& element : list) element.name = valid_text(element.name);
+  };
+  repair(scene.textures);
+  repair(scene.materials);
+  repair(scene.meshes);
+  repair(scene.instances);
+  repair(scene.lights);
+  repair(scene.cameras);
+  repair(scene.receivers);
+  repair(scene.shadow_planes);
+  for (ShadowPlane& plane : scene.shadow_planes) {
+    plane.texture = valid_text(plane.texture);
+    for (std::string& caster : plane.casters) caster = valid_text(caster);
+  }
+  // By here both JSON and OBJ have had their broken bytes replaced.
+  const auto broken = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& element) {
+      return element.name.find("\xef\xbf\xbd") != std::string::npos;
+    });
+  };
+  if (broken(scene.textures) || broken(scene.materials) || broken(scene.meshes) ||
+      broken(scene.instances) || broken(scene.lights) || broken(scene.cameras))
+    add_once(scene.notes, "names have bytes that are no UTF-8: they were replaced");
+  for (std::string& note : scene.notes) note = shortened(note, longest_message);
+}
+
+/// Leaves meshes without triangles out, and what would draw them.
+void drop_empty_meshes(Scene& scene) {
+  std::vector<std::uint32_t> number_of;
+  std::vector<Mesh> kept;
+  for (Mesh& mesh : scene.meshes) {
+    number_of.push_back(static_cast<std::uint32_t>(kept.size()));
+    if (!mesh.indices.empty())
+      kept.push_back(std::move(mesh));
+    else
+      number_of.back() = 0xffffffffu;
+  }
+  if (kept.size() == scene.meshes.size()) {
+    scene.meshes = std::move(kept);
+    return;
+  }
+  scene.meshes = std::move(kept);
+  const auto none = [&](const Instance& instance) {
+    return instance.mesh < number_of.size() && number_of[instance.mesh] == 0xffffffffu;
+  };
+  std::erase_if(scene.instances, none);
+  for (Instance& instance : scene.instances)
+    if (instance.mesh < number_of.size()) instance.mesh = number_of[instance.mesh];
+}
+
+/// The one door by which scenes come in from files, whoever brings them.
 Scene load_file(const fs::path& file) {
   const std::string extension = lower_extension(file);
   try {
@@ -34,13 +91,18 @@ Scene load_file(const fs::path& file) {
                             file.has_parent_path() ? file.parent_path() : fs::path("."));
     else
       scene = extension == ".obj" ? import_obj(file) : import_gltf(file);
+    repair_texts(scene);
+    drop_empty_meshes(scene);
     validate(scene);
     return scene;
   } catch (const Error& error) {
-    // The file's name alone: where it lies is nobody's business who asks over HTTP.
-    throw Error(error.code, file.filename().string() + ": " + error.what(), error.field);
+    // The file's name alone: where it lies must not be told over HTTP.
+    throw Error(
+        error.code,
+        valid_text(file.filename().string()) + ": " + shortened(error.what(), longest_message),
+        shortened(error.field, longest_message));
   } catch (const std::bad_alloc&) {
-    throw unreadable(file.filename().string() + ": needs more memory than there is");
+    throw unreadable(valid_text(file.filename().string()) + ": needs more memory than there is");
   }
 }
 
@@ -118,8 +180,7 @@ std::shared_ptr<const Scene> load(const std::string& name, const fs::path& data)
   if (name.find('\0') == std::string::npos && is_scene_file(name) &&
       fs::is_regular_file(name, ignored))
     return std::make_shared<const Scene>(load_file(name));
-  throw not_found("scene",
-                  "no scene '" + name.substr(0, 200) + "'; there are: " + known_names(data));
+  throw not_found("scene", "no scene " + in_quotes(name) + "; there are: " + known_names(data));
 }
 
 }  // namespace penumbra::scenes

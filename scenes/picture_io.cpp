@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "renderer/error.h"
+#include "scenes/import/import.h"
 
 namespace penumbra::scenes {
 namespace {
@@ -48,13 +49,6 @@ std::string encode(const std::string& name, ImageSpec& spec, TypeDesc type, cons
 ImageSpec spec_of(const Image8& picture) {
   return {static_cast<int>(picture.width), static_cast<int>(picture.height),
           static_cast<int>(picture.channels), TypeDesc::UINT8};
-}
-
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 void write_file(const std::filesystem::path& file, const std::string& bytes) {
@@ -112,20 +106,8 @@ Image8 as_rgba(const Image8& from) {
     for (std::uint32_t x = 0; x < from.width; ++x) {
       for (std::uint32_t c = 0; c < 3; ++c) to.at(x, y, c) = from.at(x, y, grey ? 0 : c);
       if (from.channels == 2) to.at(x, y, 3) = from.at(x, y, 1);
-      if (from.channels > 4) to.at(x, y, 3) = from.at(x, y, 3);
     }
   return to;
-}
-
-std::string read_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw not_found("file", "there is no file " + file.string());
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw unreadable("cannot read " + file.string(), "file");
-  return text.str();
 }
 
 }  // namespace
@@ -182,11 +164,20 @@ void write_picture(const std::filesystem::path& file, const ImageF& picture,
   write_file(file, encode_exr(picture, channels));
 }
 
-Image8 decode_picture(std::string_view bytes) {
+Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
   const std::string extension = format_of(bytes);
   if (extension.empty()) throw unreadable("the picture is neither PNG nor JPEG nor TIFF");
   const OpenedInput opened = open_memory(extension, bytes);
   const ImageSpec& spec = opened.input->spec();
+  if (spec.nchannels > 4)
+    throw unreadable("the picture has " + std::to_string(spec.nchannels) +
+                     " channels, more than red, green, blue and alpha");
+  const std::uint64_t needed =
+      4 * static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (needed > most_bytes)
+    throw unreadable("the picture of " + std::to_string(spec.width) + " by " +
+                     std::to_string(spec.height) + " pixels takes more than the " +
+                     std::to_string(most_bytes >> 20) + " MiB that are left for pictures");
   Image8 picture(static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
                  static_cast<std::uint32_t>(spec.nchannels));
   if (!opened.input->read_image(0, 0, 0, -1, TypeDesc::UINT8, picture.pixels.data()))
@@ -195,7 +186,7 @@ Image8 decode_picture(std::string_view bytes) {
 }
 
 Image8 read_picture(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file);
+  const std::string bytes = read_bytes(file);
   try {
     return decode_picture(bytes);
   } catch (const Error& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -26,9 +27,10 @@ void write_picture(const std::filesystem::path& file, const Image8& picture);
 void write_picture(const std::filesystem::path& file, const ImageF& picture,
                    const std::vector<std::string>& channels = {});
 
-/// PNG, JPEG or TIFF, told by its first bytes, as RGBA. Throws unreadable, also for more than 16384
-/// pixels along a side or 2^27 in all, before anything is allocated.
-Image8 decode_picture(std::string_view bytes);
+/// PNG, JPEG or TIFF, told by its first bytes, as RGBA. Throws unreadable, before anything is
+/// allocated also for more than 4 channels, 16384 pixels along a side, 2^27 pixels in all or
+/// `most_bytes` bytes of result.
+Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes = std::uint64_t{1} << 29);
 
 /// As decode_picture; throws not_found where there is no such file, unreadable naming the file.
 Image8 read_picture(const std::filesystem::path& file);

@@ -9,6 +9,7 @@
 
 #include "renderer/scene/scene.h"
 #include "scenes/import/import.h"
+#include "scenes/import/notes.h"
 
 /// Parts of the glTF import. Every index, offset and count of the model is checked where it is
 /// used: the parser checks syntax only.
@@ -18,8 +19,9 @@ namespace penumbra::scenes::gltf {
 std::string element(const char* list, std::size_t index, const std::string& name = {});
 
 /// Container, syntax, version, required extensions and references checked; images still encoded in
-/// Image::image where they are not in a buffer. `document` receives the JSON.
-tinygltf::Model parse(const std::filesystem::path& file, nlohmann::json& document);
+/// Image::image where they are not in a buffer. `document` receives the JSON without its buffers
+/// and images.
+tinygltf::Model parse(const std::filesystem::path& file, nlohmann::json& document, Notes& notes);
 
 /// Values of an accessor, `components` per element, normalised integers as -1..1 or 0..1.
 /// Throws unreadable naming `where` for anything that leads outside the buffers.
@@ -36,19 +38,30 @@ struct TextureUse {
   glm::dvec2 offset{0.0};
   double rotation = 0.0;  ///< radians, counter-clockwise
   glm::dvec2 scale{1.0};
+  bool textured = false;
+  bool repeats = true;  ///< its sampler repeats beyond 0..1
   bool operator==(const TextureUse&) const = default;
 };
 
 /// Fills textures, in their order if all are wanted, else as materials show them, and materials
 /// (the last one is glTF's default); one TextureUse per material.
 std::vector<TextureUse> read_materials(const tinygltf::Model& model, bool all_textures,
-                                       Scene& scene);
+                                       Scene& scene, Notes& notes);
 
 /// Fills meshes, one per glTF mesh; those without triangles stay empty.
-void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& uses, Scene& scene);
+void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& uses, Scene& scene,
+                 Notes& notes);
 
 /// Fills instances, lights and cameras from the node hierarchy.
-void read_nodes(const tinygltf::Model& model, Scene& scene);
+void read_nodes(const tinygltf::Model& model, Scene& scene, Notes& notes);
+
+/// Places of the copies of a node's mesh that EXT_mesh_gpu_instancing asks for, in its own space;
+/// one at the origin where it asks for none.
+std::vector<glm::dmat4> read_copies(const tinygltf::Model& model, const tinygltf::Node& node,
+                                    const std::string& where);
+
+/// Corners of all triangles that are drawn together; 5 million triangles have 15 million.
+constexpr std::size_t max_corners = 100'000'000;
 
 /// Sets exposure, ambient and background so that lights in physical units give a picture that is
 /// neither black nor burnt.

@@ -40,8 +40,14 @@ void read_extras(const nlohmann::json& document, Scene& scene) {
     if (!casters[i].is_boolean()) reader.fail("casts_shadow", "must hold true and false");
     scene.instances[i].casts_shadow = casters[i].get<bool>();
   }
+  // What was left out when the scene came in.
+  if (reader.has("notes")) {
+    for (const nlohmann::json& note : list("notes")) {
+      if (!note.is_string()) reader.fail("notes", "must hold texts");
+      scene.notes.push_back(note);
+    }
+  }
   reader.finish();
-  scene.notes.clear();
 }
 
 /// Whether the file is one of ours, whose extras say everything about lights and cameras.
@@ -55,17 +61,18 @@ bool has_extras(const nlohmann::json& document) {
 
 Scene import_gltf(const std::filesystem::path& file, bool complete) {
   nlohmann::json document;
-  const tinygltf::Model model = gltf::parse(file, document);
+  Notes notes;
+  const tinygltf::Model model = gltf::parse(file, document, notes);
   const bool ours = gltf::has_extras(document);
   Scene scene;
   scene.id = scene.title = file.stem().string();
-  const std::vector<gltf::TextureUse> uses = gltf::read_materials(model, ours, scene);
-  gltf::read_meshes(model, uses, scene);
-  gltf::read_nodes(model, scene);
+  const std::vector<gltf::TextureUse> uses = gltf::read_materials(model, ours, scene, notes);
+  gltf::read_meshes(model, uses, scene, notes);
+  gltf::read_nodes(model, scene, notes);
   if (scene.instances.empty()) throw unreadable("the file has no triangles to draw");
-  if (ours) {
-    gltf::read_extras(document, scene);
-  } else if (complete) {
+  if (ours) gltf::read_extras(document, scene);
+  notes.write_to(scene.notes);
+  if (!ours && complete) {
     gltf::expose(scene);
     complete_import(scene);
   }

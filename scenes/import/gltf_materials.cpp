@@ -4,7 +4,7 @@
 
 #include "renderer/error.h"
 #include "scenes/import/gltf.h"
-#include "scenes/picture_io.h"
+#include "scenes/import/side_files.h"
 
 namespace penumbra::scenes::gltf {
 namespace {
@@ -45,50 +45,63 @@ std::string_view encoded_image(const tinygltf::Model& model, const tinygltf::Ima
   return {reinterpret_cast<const char*>(bytes.data()) + view.byteOffset, view.byteLength};
 }
 
-/// Decodes an image once and only if a material shows it.
+/// Decodes an image only if a material shows it.
 class Textures {
  public:
-  Textures(const tinygltf::Model& model_, Scene& scene_) : model(model_), scene(scene_) {}
+  Textures(const tinygltf::Model& model_, Scene& scene, Notes& notes_)
+      : model(model_), notes(notes_), store(scene, notes_, max_texture_bytes) {}
 
   int use(int texture, const std::string& where) {
     if (texture < 0) return -1;
-    if (static_cast<std::size_t>(texture) >= model.textures.size())
-      throw unreadable(where + " names no texture", where);
-    const int source = model.textures[static_cast<std::size_t>(texture)].source;
+    const int source = source_of(texture, where);
     if (source < 0) {
-      scene.notes.push_back(where + " has no image that can be read: it is left out");
+      notes.add(where, " has no image that can be read: it is left out");
       return -1;
     }
-    if (static_cast<std::size_t>(source) >= model.images.size())
-      throw unreadable(element("textures", static_cast<std::size_t>(texture)) + " names no image");
     const auto [entry, added] = known.try_emplace(source, -1);
-    if (added) entry->second = decode(static_cast<std::size_t>(source));
+    if (!added) return entry->second;
+    const auto index = static_cast<std::size_t>(source);
+    const tinygltf::Image& image = model.images[index];
+    const std::string name = element("images", index, image.name);
+    const std::string_view bytes = encoded_image(model, image, name);
+    // That its file is not there has been told where it was looked for.
+    if (!bytes.empty() || image.uri.empty()) entry->second = store.add(image.name, bytes, name);
     return entry->second;
   }
 
+  /// All textures in their order, whatever they show.
+  void use_all() {
+    for (std::size_t i = 0; i < model.textures.size(); ++i) {
+      const int source = source_of(static_cast<int>(i), element("textures", i));
+      if (source < 0) throw unreadable(element("textures", i) + " names no image");
+      const tinygltf::Image& image = model.images[static_cast<std::size_t>(source)];
+      const std::string name = element("images", static_cast<std::size_t>(source), image.name);
+      store.add_in_order(image.name, encoded_image(model, image, name), name);
+    }
+  }
+
+  /// Whether a texture goes on beyond its borders; where it does not that is approximated.
+  bool repeats(int texture) const {
+    if (texture < 0 || static_cast<std::size_t>(texture) >= model.textures.size()) return true;
+    const int sampler = model.textures[static_cast<std::size_t>(texture)].sampler;
+    if (sampler < 0 || static_cast<std::size_t>(sampler) >= model.samplers.size()) return true;
+    const tinygltf::Sampler& wrap = model.samplers[static_cast<std::size_t>(sampler)];
+    return wrap.wrapS == TINYGLTF_TEXTURE_WRAP_REPEAT && wrap.wrapT == TINYGLTF_TEXTURE_WRAP_REPEAT;
+  }
+
  private:
-  int decode(std::size_t index) {
-    const tinygltf::Image& image = model.images[index];
-    const std::string where = element("images", index, image.name);
-    const std::string_view bytes = encoded_image(model, image, where);
-    if (bytes.empty()) {
-      scene.notes.push_back(where + " is missing" +
-                            (image.uri.empty() ? "" : " ('" + image.uri + "')") +
-                            ": it is left out");
-      return -1;
-    }
-    try {
-      Image8 picture = decode_picture(bytes);
-      scene.textures.push_back(
-          {image.name, picture.width, picture.height, std::move(picture.pixels)});
-    } catch (const Error& error) {
-      throw unreadable(where + ": " + error.what(), where);
-    }
-    return static_cast<int>(scene.textures.size()) - 1;
+  int source_of(int texture, const std::string& where) const {
+    if (static_cast<std::size_t>(texture) >= model.textures.size())
+      throw unreadable(where + " names no texture", where);
+    const int source = model.textures[static_cast<std::size_t>(texture)].source;
+    if (source >= static_cast<int>(model.images.size()))
+      throw unreadable(element("textures", static_cast<std::size_t>(texture)) + " names no image");
+    return source;
   }
 
   const tinygltf::Model& model;
-  Scene& scene;
+  Notes& notes;
+  TextureStore store;
   std::map<int, int> known;
 };
 
@@ -135,8 +148,21 @@ void read_diffuse(const tinygltf::Value& extension, Textures& textures, const st
   use = use_of(static_cast<int>(number_of(info, "texCoord", 0.0)), {});
 }
 
+/// Tells what a material has and is not drawn.
+void tell_left_out(const tinygltf::Material& from, const std::string& where, Notes& notes) {
+  if (from.emissiveTexture.index >= 0) notes.add(where, ": its emissive texture is left out");
+  if (from.normalTexture.index >= 0) notes.add(where, ": its normal map is left out");
+  if (from.occlusionTexture.index >= 0) notes.add(where, ": its occlusion map is left out");
+  if (from.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
+    notes.add(where, ": its metal and roughness map is drawn as one roughness");
+  if (from.extensions.count("KHR_materials_unlit") != 0)
+    notes.add(where, " is unlit in the file and lit here");
+  if (from.alphaMode == "BLEND")
+    notes.add(where, " is blended in the file and cut at half its alpha here");
+}
+
 Material read_material(const tinygltf::Material& from, Textures& textures, const std::string& where,
-                       TextureUse& use, Scene& scene) {
+                       TextureUse& use, Notes& notes) {
   Material material;
   material.name = from.name;
   const auto& pbr = from.pbrMetallicRoughness;
@@ -144,6 +170,7 @@ Material read_material(const tinygltf::Material& from, Textures& textures, const
   if (pbr.baseColorFactor.size() == 4) material.alpha = share(pbr.baseColorFactor[3], 1.0);
   material.texture = textures.use(pbr.baseColorTexture.index, where + ".baseColorTexture");
   use = use_of(pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions);
+  use.repeats = textures.repeats(pbr.baseColorTexture.index);
   const float metallic = share(pbr.metallicFactor, 1.0);
   const bool textured_metal = pbr.metallicRoughnessTexture.index >= 0;
   material.specular = textured_metal ? 0.06f : 0.04f + 0.26f * metallic;
@@ -152,36 +179,32 @@ Material read_material(const tinygltf::Material& from, Textures& textures, const
   if (from.emissiveFactor.size() == 3)
     for (int c = 0; c < 3; ++c)
       material.emissive[c] = share(from.emissiveFactor[static_cast<std::size_t>(c)], 0.0);
-  if (from.emissiveTexture.index >= 0) {
-    material.emissive = glm::vec3(0.0f);
-    scene.notes.push_back(where + ": its emissive texture is left out");
-  }
-  if (from.extensions.count("KHR_materials_unlit") != 0)
-    scene.notes.push_back(where + " is unlit in the file and lit here");
+  if (from.emissiveTexture.index >= 0) material.emissive = glm::vec3(0.0f);
   const auto older = from.extensions.find("KHR_materials_pbrSpecularGlossiness");
   if (older != from.extensions.end()) read_diffuse(older->second, textures, where, material, use);
   if (from.alphaMode == "MASK" || from.alphaMode == "BLEND") {
     material.alpha_mode = AlphaMode::mask;
     material.alpha_cutoff = from.alphaMode == "MASK" ? share(from.alphaCutoff, 0.5) : 0.5f;
   }
-  if (from.alphaMode == "BLEND")
-    scene.notes.push_back(where + " is blended in the file and cut at half its alpha here");
   material.double_sided = from.doubleSided;
+  use.textured = material.texture >= 0;
+  tell_left_out(from, where, notes);
   return material;
 }
 
 }  // namespace
 
 std::vector<TextureUse> read_materials(const tinygltf::Model& model, bool all_textures,
-                                       Scene& scene) {
-  Textures textures(model, scene);
-  for (std::size_t i = 0; all_textures && i < model.textures.size(); ++i)
-    textures.use(static_cast<int>(i), element("textures", i));
+                                       Scene& scene, Notes& notes) {
+  Textures textures(model, scene, notes);
+  // The materials of a file of ours name textures by their place.
+  if (all_textures) textures.use_all();
   std::vector<TextureUse> uses;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     TextureUse use;
     const std::string where = element("materials", i, model.materials[i].name);
-    scene.materials.push_back(read_material(model.materials[i], textures, where, use, scene));
+    if (!all_textures)
+      scene.materials.push_back(read_material(model.materials[i], textures, where, use, notes));
     uses.push_back(use);
   }
   Material plain;

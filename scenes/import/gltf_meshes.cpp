@@ -8,9 +8,6 @@
 namespace penumbra::scenes::gltf {
 namespace {
 
-/// Corners of all meshes together; 5 million triangles have 15 million.
-constexpr std::size_t max_corners = 100'000'000;
-
 int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
   const auto found = primitive.attributes.find(name);
   return found == primitive.attributes.end() ? -1 : found->second;
@@ -51,6 +48,14 @@ std::vector<glm::vec2> read_uvs(const tinygltf::Model& model, int accessor, cons
   return uvs;
 }
 
+/// Whether any place lies beyond the texture's border, rounding aside.
+bool leaves_unit_square(const std::vector<glm::vec2>& uvs) {
+  constexpr float slack = 1e-3f;
+  return std::any_of(uvs.begin(), uvs.end(), [](const glm::vec2& uv) {
+    return uv.x < -slack || uv.y < -slack || uv.x > 1.0f + slack || uv.y > 1.0f + slack;
+  });
+}
+
 std::vector<glm::vec4> read_colors(const tinygltf::Model& model, int accessor,
                                    const std::string& where) {
   const int components = components_of(model, accessor, where);
@@ -67,7 +72,7 @@ std::vector<glm::vec4> read_colors(const tinygltf::Model& model, int accessor,
 
 /// Attributes of one primitive as a mesh without triangles.
 Mesh read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                   const TextureUse& use, const std::string& where) {
+                   const TextureUse& use, const std::string& where, Notes& notes) {
   Mesh mesh;
   const std::vector<float> positions =
       read_floats(model, attribute(primitive, "POSITION"), 3, where + ".POSITION");
@@ -88,6 +93,10 @@ Mesh read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& prim
   if (const int accessor = attribute(primitive, set); accessor >= 0) {
     mesh.uvs = read_uvs(model, accessor, use, where + "." + set);
     check(mesh.uvs.size(), set.c_str());
+    if (use.textured && !use.repeats && leaves_unit_square(mesh.uvs))
+      notes.add(where, ": its texture repeats instead of ending at its border or mirroring");
+  } else if (use.textured) {
+    notes.add(where, " has no " + set + ": its texture shows one colour");
   }
   if (const int accessor = attribute(primitive, "COLOR_0"); accessor >= 0) {
     mesh.colors = read_colors(model, accessor, where + ".COLOR_0");
@@ -98,7 +107,7 @@ Mesh read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& prim
 
 /// Files without normals are shaded flat (glTF 2.0, 3.7.2.1); normals that are no directions are
 /// replaced by those of their faces.
-void repair_normals(Mesh& mesh, const std::string& where, Scene& scene) {
+void repair_normals(Mesh& mesh, const std::string& where, Notes& notes) {
   if (mesh.normals.empty()) {
     compute_normals(mesh, 0.0);
     return;
@@ -111,7 +120,7 @@ void repair_normals(Mesh& mesh, const std::string& where, Scene& scene) {
       continue;
     }
     if (faces.empty()) {
-      scene.notes.push_back(where + ": normals that are no directions were computed anew");
+      notes.add(where, ": normals that are no directions were computed anew");
       faces.assign(mesh.positions.size(), glm::vec3(0.0f));
       for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const glm::vec3& a = mesh.positions[mesh.indices[i]];
@@ -152,27 +161,27 @@ void join(Mesh& mesh, Mesh piece) {
   }
 }
 
-bool is_surface(const tinygltf::Primitive& primitive, const std::string& where, Scene& scene) {
+bool is_surface(const tinygltf::Primitive& primitive, const std::string& where, Notes& notes) {
   if (primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN)
     return true;
   if (primitive.mode < -1 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
     throw unreadable(where + ".mode is none of glTF: " + std::to_string(primitive.mode), where);
   if (primitive.mode == -1) return true;
-  scene.notes.push_back(where + " consists of points or lines: it is left out");
+  notes.add(where, " consists of points or lines: it is left out");
   return false;
 }
 
 Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                    const std::vector<TextureUse>& uses, const std::string& where, Scene& scene) {
+                    const std::vector<TextureUse>& uses, const std::string& where, Notes& notes) {
   if (primitive.material >= static_cast<int>(model.materials.size()) || primitive.material < -1)
     throw unreadable(where + ".material names no material", where);
   const auto material = primitive.material < 0 ? model.materials.size()
                                                : static_cast<std::size_t>(primitive.material);
   if (attribute(primitive, "POSITION") < 0) {
-    scene.notes.push_back(where + " has no positions: it is left out");
+    notes.add(where, " has no positions: it is left out");
     return {};
   }
-  Mesh mesh = read_vertices(model, primitive, uses[material], where);
+  Mesh mesh = read_vertices(model, primitive, uses[material], where, notes);
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0) {
     indices = read_indices(model, primitive.indices, where + ".indices");
@@ -188,7 +197,7 @@ Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
                        where);
   mesh.primitives = {
       {0, static_cast<std::uint32_t>(mesh.indices.size()), static_cast<std::uint32_t>(material)}};
-  repair_normals(mesh, where, scene);
+  repair_normals(mesh, where, notes);
   return mesh;
 }
 
@@ -204,7 +213,8 @@ bool share_vertices(const tinygltf::Primitive& a, const tinygltf::Primitive& b,
 
 }  // namespace
 
-void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& uses, Scene& scene) {
+void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& uses, Scene& scene,
+                 Notes& notes) {
   std::size_t corners = 0;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     const tinygltf::Mesh& from = model.meshes[m];
@@ -217,9 +227,9 @@ void read_meshes(const tinygltf::Model& model, const std::vector<TextureUse>& us
           attribute(primitive, "POSITION") < 0)
         throw unreadable(where + " is compressed by KHR_draco_mesh_compression", where);
       if (!primitive.targets.empty() && p == 0)
-        scene.notes.push_back(where + ": its morph targets are left out");
-      if (!is_surface(primitive, where, scene)) continue;
-      Mesh piece = read_primitive(model, primitive, uses, where, scene);
+        notes.add(where, ": its morph targets are left out");
+      if (!is_surface(primitive, where, notes)) continue;
+      Mesh piece = read_primitive(model, primitive, uses, where, notes);
       if (piece.indices.empty()) continue;
       corners += piece.indices.size();
       if (corners > max_corners) throw unreadable("the file has too many triangles", where);

@@ -4,6 +4,7 @@
 
 #include "renderer/error.h"
 #include "scenes/import/gltf.h"
+#include "scenes/json_reader.h"
 
 namespace penumbra::scenes::gltf {
 namespace {
@@ -14,8 +15,8 @@ constexpr double degrees = 57.29577951308232;
 template <class List>
 void check_finite(const List& values, const std::string& where) {
   for (const double value : values)
-    if (!std::isfinite(value) || std::abs(value) > 1e30)
-      throw unreadable(where + " has a transform that is not finite", where);
+    if (!std::isfinite(value) || std::abs(value) > max_coordinate)
+      throw unreadable(where + " has a transform beyond 1e15, or none that is finite", where);
 }
 
 glm::dmat4 local_matrix(const tinygltf::Node& node, const std::string& where) {
@@ -67,14 +68,16 @@ void add_camera(const tinygltf::Camera& from, const glm::dmat4& matrix, const st
     camera.projection = Projection::orthographic;
     camera.orthographic_height = 2.0 * std::abs(from.orthographic.ymag);
     near_plane = from.orthographic.znear;
-    if (!(camera.orthographic_height > 0.0))
+    if (!(camera.orthographic_height >= 1e-9 && camera.orthographic_height <= max_coordinate))
       throw unreadable(where + ".ymag must be above 0", where);
   } else {
     camera.vertical_fov = degrees * from.perspective.yfov;
     if (!(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0))
       throw unreadable(where + ".yfov must be above 0 and below pi", where);
   }
-  camera.near_plane = near_plane > 0.0 ? near_plane : 0.01;
+  // The ranges of a scene document.
+  camera.vertical_fov = std::clamp(camera.vertical_fov, 0.01, 179.99);
+  camera.near_plane = near_plane > 0.0 ? std::clamp(near_plane, 1e-9, max_coordinate) : 0.01;
   scene.cameras.push_back(camera);
 }
 
@@ -90,9 +93,9 @@ void add_light(const tinygltf::Light& from, const glm::dmat4& matrix, const std:
   for (int c = 0; c < 3 && c < static_cast<int>(from.color.size()); ++c)
     light.color[c] = static_cast<float>(std::max(0.0, from.color[static_cast<std::size_t>(c)]));
   light.intensity = static_cast<float>(from.intensity);
-  if (!(from.intensity >= 0.0 && from.intensity < 1e12))
-    throw unreadable(where + ".intensity must be in 0..1e12", where);
-  light.range = from.range > 0.0 && std::isfinite(from.range) ? from.range : 0.0;
+  if (!(from.intensity >= 0.0 && from.intensity <= max_intensity))
+    throw unreadable(where + ".intensity must be in 0..1e30", where);
+  light.range = from.range > 0.0 && from.range <= max_coordinate ? from.range : 0.0;
   light.attenuation = Attenuation::inverse_square;
   if (from.type == "directional") {
     light.kind = LightKind::directional;
@@ -109,20 +112,32 @@ void add_light(const tinygltf::Light& from, const glm::dmat4& matrix, const std:
   scene.lights.push_back(light);
 }
 
+/// Adds what a node draws; `corners` counts those of all nodes.
+void add_instances(const tinygltf::Model& model, const tinygltf::Node& node,
+                   const std::string& where, const glm::dmat4& matrix, std::size_t& corners,
+                   Scene& scene, Notes& notes) {
+  const auto index = static_cast<std::size_t>(node.mesh);
+  if (scene.meshes[index].indices.empty()) return;
+  if (node.skin >= 0) notes.add(where, " is drawn as modelled: its skin is left out");
+  for (const glm::dmat4& copy : read_copies(model, node, where)) {
+    const glm::dmat4 place = matrix * copy;
+    const double volume = glm::determinant(glm::dmat3(place));
+    if (volume == 0.0 || !std::isfinite(volume)) {
+      notes.add(where, " is scaled to nothing: it is left out");
+      continue;
+    }
+    corners += scene.meshes[index].indices.size();
+    if (corners > max_corners) throw unreadable("the file has too many triangles", where);
+    scene.instances.push_back({node.name, static_cast<std::uint32_t>(index), place, true});
+  }
+}
+
 void add_node(const tinygltf::Model& model, const tinygltf::Node& node, std::size_t index,
-              const glm::dmat4& matrix, Scene& scene) {
+              const glm::dmat4& matrix, std::size_t& corners, Scene& scene, Notes& notes) {
   const std::string where = element("nodes", index, node.name);
   if (node.mesh >= static_cast<int>(scene.meshes.size()))
     throw unreadable(where + ".mesh names no mesh", where);
-  if (node.mesh >= 0 && !scene.meshes[static_cast<std::size_t>(node.mesh)].indices.empty()) {
-    if (node.skin >= 0)
-      scene.notes.push_back(where + " is drawn as modelled: its skin is left out");
-    const double volume = glm::determinant(glm::dmat3(matrix));
-    if (volume == 0.0 || !std::isfinite(volume))
-      scene.notes.push_back(where + " is scaled to nothing: it is left out");
-    else
-      scene.instances.push_back({node.name, static_cast<std::uint32_t>(node.mesh), matrix, true});
-  }
+  if (node.mesh >= 0) add_instances(model, node, where, matrix, corners, scene, notes);
   if (node.camera >= static_cast<int>(model.cameras.size()))
     throw unreadable(where + ".camera names no camera", where);
   if (node.camera >= 0) {
@@ -175,7 +190,7 @@ std::vector<int> scene_nodes(const tinygltf::Model& model, const std::vector<int
 
 }  // namespace
 
-void read_nodes(const tinygltf::Model& model, Scene& scene) {
+void read_nodes(const tinygltf::Model& model, Scene& scene, Notes& notes) {
   struct Visit {
     int node;
     int depth;
@@ -186,6 +201,7 @@ void read_nodes(const tinygltf::Model& model, Scene& scene) {
   for (auto node = starts.rbegin(); node != starts.rend(); ++node)
     open.push_back({*node, 0, glm::dmat4(1.0)});
   std::vector<bool> seen(model.nodes.size(), false);
+  std::size_t corners = 0;
   while (!open.empty()) {
     const Visit visit = open.back();
     open.pop_back();
@@ -202,11 +218,11 @@ void read_nodes(const tinygltf::Model& model, Scene& scene) {
     for (int column = 0; column < 4; ++column)
       check_finite(std::vector<double>{matrix[column].x, matrix[column].y, matrix[column].z},
                    where);
-    add_node(model, node, index, matrix, scene);
+    add_node(model, node, index, matrix, corners, scene, notes);
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
       open.push_back({*child, visit.depth + 1, matrix});
   }
-  if (!model.animations.empty()) scene.notes.push_back("animations are left out");
+  if (!model.animations.empty()) notes.add("", "animations are left out");
 }
 
 void expose(Scene& scene) {

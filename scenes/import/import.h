@@ -19,10 +19,16 @@ Scene import_obj(const std::filesystem::path& file, bool complete = true);
 /// Whole file as bytes. Throws not_found, unreadable.
 std::string read_bytes(const std::filesystem::path& file);
 
-/// The file that a reference inside another file means: percent-encoding undone, and refused
-/// (unreadable, naming `what`) where it has a scheme, is absolute, climbs with `..`, or where links
-/// lead out of the folder.
-std::filesystem::path resolve_inside(const std::filesystem::path& folder, const std::string& uri,
+/// What %20 and the like mean; a + stays one.
+std::string percent_decoded(const std::string& text);
+
+/// ".glb" of "A.GLB".
+std::string lower_extension(const std::filesystem::path& file);
+
+/// The file that a reference inside another file means: percent-encoding undone, unless only a file
+/// of the name as it stands is there. Throws unreadable naming `what` where it has a scheme, is
+/// absolute, climbs with `..`, or where links lead out of the folder.
+std::filesystem::path resolve_inside(const std::filesystem::path& folder, const std::string& name,
                                      const std::string& what);
 
 /// Gives an imported scene what it lacks and says so in its notes: a camera that frames everything;
