@@ -57,8 +57,8 @@ ParameterValue from_json(const std::string& key, const nlohmann::json& value) {
       value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()})
     return value.get<double>();
   if (value.is_number_integer()) return value.get<std::int64_t>();
-  throw bad_value(
-      key, "parameter " + key + " must be true, false, a number or a string, not " + value.dump());
+  throw bad_value(key, "parameter " + key + " must be true, false, a number or a string, not " +
+                           value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "renderer/error.h"
+#include "scenes/json_text.h"
 #include "server/cli/session.h"
 
 namespace penumbra::server::cli {
@@ -14,9 +15,10 @@ using nlohmann::json;
 int report(const Session& session, const Error& error) {
   std::cerr << "penumbra: " << error.what() << '\n';
   if (session.json)
-    std::cout << json{{"error",
-                       {{"code", error.code}, {"message", error.what()}, {"field", error.field}}}}
-                     .dump(2)
+    std::cout << scenes::json_text(
+                     {{"error",
+                       {{"code", error.code}, {"message", error.what()}, {"field", error.field}}}},
+                     2)
               << '\n';
   return error.code == "bad_value" || error.code == "not_found" ? wrong_usage : failed;
 }
@@ -32,7 +34,7 @@ bool asks_for_json(const std::vector<std::string>& arguments) {
 
 void Session::print(const nlohmann::json& document, const std::string& text) const {
   if (json) {
-    std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    std::cout << scenes::json_text(document, 2) << '\n';
   } else {
     std::cout << text;
   }

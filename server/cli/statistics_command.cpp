@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "renderer/error.h"
+#include "scenes/json_text.h"
 #include "server/cli/session.h"
 #include "server/cli/written_file.h"
 #include "server/jobs/durable_file.h"
@@ -35,7 +36,7 @@ int analyse(const Session& session, const Options& paths) {
   const std::string table = study::statistics_table(report, options);
   if (!paths.out.empty()) {
     fs::create_directories(paths.out / "figures");
-    write_file(paths.out / "results.json", report.dump(2) + "\n");
+    write_file(paths.out / "results.json", scenes::json_text(report, 2) + "\n");
     write_file(paths.out / "tables.txt", table);
     for (const auto& figure : study::figures_of(report, figures))
       write_file(paths.out / "figures" / (figure.name + ".svg"), figure.svg);

@@ -1,11 +1,10 @@
 #include "server/http/event_stream.h"
+#include "scenes/json_text.h"
 
 namespace penumbra::server::http {
 
 bool EventSink::send(const std::string& event, const nlohmann::json& data) {
-  const std::string text =
-      "event: " + event +
-      "\ndata: " + data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n\n";
+  const std::string text = "event: " + event + "\ndata: " + scenes::json_text(data) + "\n\n";
   return sink.write(text.data(), text.size());
 }
 

@@ -1,4 +1,5 @@
 #include "server/http/reply.h"
+#include "scenes/json_text.h"
 
 #include <httplib.h>
 #include <spdlog/spdlog.h>
@@ -9,7 +10,7 @@ namespace penumbra::server::http {
 namespace {
 
 std::string text_of(const nlohmann::json& body) {
-  return body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return scenes::json_text(body);
 }
 
 void set_error_headers(httplib::Response& response, const Error& error) {

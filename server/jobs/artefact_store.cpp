@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "scenes/json_text.h"
 #include "server/jobs/digest.h"
 #include "server/jobs/durable_file.h"
 
@@ -32,13 +33,13 @@ bool is_id(const std::string& text) {
 
 /// A record with the digest of its own text, so that damage to it shows as well.
 std::string sealed(const json& stored) {
-  return json{{"sha256", sha256(stored.dump())}, {"stored", stored}}.dump();
+  return scenes::json_text(json{{"sha256", sha256(scenes::json_text(stored))}, {"stored", stored}});
 }
 
 json unsealed(const std::string& text) {
   const json outer = json::parse(text, nullptr, false);
   if (!outer.is_object() || !outer.contains("sha256") || !outer.contains("stored")) return nullptr;
-  if (outer["sha256"] != sha256(outer["stored"].dump())) return nullptr;
+  if (outer["sha256"] != sha256(scenes::json_text(outer["stored"]))) return nullptr;
   return outer["stored"];
 }
 

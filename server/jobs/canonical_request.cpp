@@ -8,6 +8,7 @@
 #include "renderer/error.h"
 #include "renderer/frame/common_parameters.h"
 #include "renderer/technique.h"
+#include "scenes/json_text.h"
 #include "scenes/library.h"
 #include "server/jobs/digest.h"
 #include "server/jobs/drawing_version.h"
@@ -24,7 +25,7 @@ constexpr std::uint64_t max_seed = (1ull << 53) - 1;
 constexpr std::size_t max_name = 4096;  // characters: scene names may be paths
 
 std::string shown(const json& value) {
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = scenes::json_text(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }
@@ -156,7 +157,7 @@ json checked_lights(const Scene& scene, json lights) {
 }
 
 void identify(CanonicalRequest& canonical) {
-  canonical.id = sha256(canonical.request.dump()).substr(0, 32);
+  canonical.id = sha256(scenes::json_text(canonical.request)).substr(0, 32);
 }
 
 const TechniqueDescription& truth() {

@@ -1,4 +1,5 @@
 #include "server/jobs/message.h"
+#include "scenes/json_text.h"
 
 #include <poll.h>
 #include <unistd.h>
@@ -52,7 +53,7 @@ void write_message(int descriptor, const Message& message) {
       list.push_back({{"name", name}, {"bytes", bytes.size()}});
     head["blobs"] = std::move(list);
   }
-  write_all(descriptor, head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n");
+  write_all(descriptor, scenes::json_text(head) + "\n");
   for (const auto& [name, bytes] : message.blobs) write_all(descriptor, bytes);
 }
 

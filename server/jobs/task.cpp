@@ -191,7 +191,9 @@ TaskResult run_task(Renderer& renderer, const Task& task,
         {parts.next(), [&](const auto& state) { checkpoint.offer(state); }, checkpoint.load()});
     checkpoint.remove();
   }
+  const std::vector<std::string>& of_scene = task.request.scene->notes;
   result.notes.insert(result.notes.begin(), drawn.notes.begin(), drawn.notes.end());
+  result.notes.insert(result.notes.begin(), of_scene.begin(), of_scene.end());
 
   const Image8& shown = request.diagnostic.empty() ? drawn.picture : drawn.diagnostic;
   if (wanted(want::image)) result.artefacts[want::image] = scenes::encode_png(shown);
