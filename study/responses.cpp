@@ -15,10 +15,15 @@ namespace penumbra::study {
 
 namespace {
 
-constexpr std::string_view dangerous = std::string_view("=+-@\t\r\0", 7);
-
+/// Spreadsheets skip blanks, and take the wide forms of East Asian keyboards for = + - @ as well.
 bool is_dangerous(std::string_view cell) {
-  return !cell.empty() && dangerous.find(cell.front()) != std::string_view::npos;
+  constexpr std::string_view controls("\t\r\n\0", 4);
+  if (cell.empty()) return false;
+  if (controls.find(cell.front()) != std::string_view::npos) return true;
+  cell.remove_prefix(std::min(cell.find_first_not_of(' '), cell.size()));
+  for (const std::string_view begin : {"=", "+", "-", "@", "\uFF1D", "\uFF0B", "\uFF0D", "\uFF20"})
+    if (cell.starts_with(begin)) return true;
+  return false;
 }
 
 /// Undoes the writer's apostrophe. A cell that began with an apostrophe itself was left alone,

@@ -54,8 +54,8 @@ struct Column {
 };
 const std::vector<Column>& response_columns();
 
-/// RFC 4180 (CRLF), UTF-8. Text cells that begin with = + - @ tab, carriage return or NUL get a
-/// leading apostrophe, so that no spreadsheet runs them.
+/// RFC 4180 (CRLF), UTF-8. Text cells that begin with = + - @ (blanks before it or not, or in its
+/// wide form), tab, a line's end or NUL get a leading apostrophe, so that no spreadsheet runs them.
 std::string write_responses(const std::vector<ResponseRow>& rows);
 std::string write_codebook();
 

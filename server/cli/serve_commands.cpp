@@ -12,6 +12,8 @@ void add_serve(CLI::App& app, Session& session) {
   serve->add_option("--port", options->port, "Port, 0 for a free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
+  serve->add_option("--ops-host", options->ops_host, "Address of health and metrics")
+      ->capture_default_str();
   serve->add_option("--ops-port", options->ops_port, "Port of health and metrics, -1 for none")
       ->check(CLI::Range(-1, 65535))
       ->capture_default_str();
@@ -25,7 +27,10 @@ void add_serve(CLI::App& app, Session& session) {
       "--token-file", options->token_file,
       "File with the researcher's token; by default one in the data folder, made once");
   serve->add_option("--web", options->web, "Serve the pages from this folder");
-  serve->add_option("--public-url", options->public_url, "How browsers reach this server");
+  serve->add_option(
+      "--public-url", options->public_url,
+      "How browsers reach this server; with it, or a host that is not loopback, renders need "
+      "the researcher's token");
   serve->add_option("--queue-limit", options->queue_limit, "Renders that may wait")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

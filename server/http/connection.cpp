@@ -85,6 +85,7 @@ void Connection::tell_to_continue() {
 
 void Connection::next() {
   input.erase(0, framed);
+  head = {};
   judged = 0;
   framed = 0;
   whole_head = false;

@@ -58,6 +58,8 @@ class Connection {
   Clock::time_point waiting_since() const { return since; }
   bool parted() const { return leaving; }
   bool idle() const { return input.empty(); }
+  /// All that came belonged to the request, and nothing of it is still to come.
+  bool all_used() const { return framing.done() && input.size() == framed; }
   std::size_t buffered() const { return input.size(); }
   int socket() const { return descriptor; }
   const RequestHead& request() const { return head; }

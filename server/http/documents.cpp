@@ -59,7 +59,7 @@ const nlohmann::json& api_document() {
 }
 
 void add_document_routes(std::vector<Route>& table) {
-  table.push_back({"GET", "/openapi.json", Access::anyone, get_api});
+  table.push_back({"GET", "/openapi.json", Access::laboratory, get_api});
 }
 
 }  // namespace penumbra::server::http

@@ -20,8 +20,8 @@ class EventSink {
   httplib::DataSink& sink;
 };
 
-/// Answers with a stream; `next` waits about a second at most, writes what is new, and returns
-/// false to end it.
+/// Answers with a stream, one of a bounded number (busy beyond); `next` waits about a second at
+/// most, writes what is new, and returns false to end it.
 void send_events(Call& call, std::function<bool(EventSink&)> next);
 
 }  // namespace penumbra::server::http

@@ -10,7 +10,14 @@ namespace penumbra::server::http {
 namespace {
 
 bool loopback(const std::string& address) {
-  return address == "127.0.0.1" || address == "::1" || address == "::ffff:127.0.0.1";
+  return address.starts_with("127.") || address == "::1" || address.starts_with("::ffff:127.") ||
+         address == "localhost";
+}
+
+/// Host of "name:port" and "[address]:port".
+std::string without_port(const std::string& host) {
+  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
+  return host.substr(0, host.find(':'));
 }
 
 std::string cookie(const httplib::Request& request, const std::string& name) {
@@ -41,27 +48,39 @@ void check_origin(const Service& service, const httplib::Request& request) {
   if (site == "cross-site" || site == "same-site") throw foreign;
   if (!request.has_header("Origin")) return;
   const auto origin = request.get_header_value("Origin");
+  const auto& options = service.options;
+  if (!options.public_url.empty()) {
+    if (origin != origin_of(options.public_url)) throw foreign;
+    return;
+  }
+  // A page can point a name of its own at this machine: only then is Host not what it seems.
   const auto host = request.get_header_value("Host");
   const bool own = origin == "http://" + host || origin == "https://" + host;
-  const bool published = !origin.empty() && origin == origin_of(service.options.public_url);
-  if (!own && !published) throw foreign;
+  if (!own || (is_local(options) && !loopback(without_port(host)))) throw foreign;
 }
 
 }  // namespace
 
+double RateLimiter::refilled(const Bucket& bucket, Clock::time_point now) const {
+  const std::chrono::duration<double> passed = now - bucket.at;
+  return std::min(burst, bucket.left + per_second * passed.count());
+}
+
+bool RateLimiter::has_left(const std::string& client) {
+  const std::lock_guard lock(mutex);
+  const auto found = buckets.find(client);
+  return found == buckets.end() || refilled(found->second, Clock::now()) >= 1.0;
+}
+
 bool RateLimiter::allow(const std::string& client) {
   const std::lock_guard lock(mutex);
   const auto now = Clock::now();
-  const auto refilled = [&](const Bucket& bucket) {
-    const std::chrono::duration<double> passed = now - bucket.at;
-    return std::min(burst, bucket.left + per_second * passed.count());
-  };
   constexpr std::size_t most = 10000;
   if (buckets.size() >= most)
-    std::erase_if(buckets, [&](const auto& entry) { return refilled(entry.second) >= burst; });
+    std::erase_if(buckets, [&](const auto& entry) { return refilled(entry.second, now) >= burst; });
   if (buckets.size() >= most && !buckets.contains(client)) return false;
   auto& bucket = buckets.try_emplace(client, Bucket{burst, now}).first->second;
-  bucket = {refilled(bucket), now};
+  bucket = {refilled(bucket, now), now};
   if (bucket.left < 1.0) return false;
   bucket.left -= 1.0;
   return true;
@@ -79,12 +98,38 @@ std::string session_of(const std::string& token) {
   return keyed_digest(token, "session");
 }
 
-bool is_researcher(const Service& service, const httplib::Request& request) {
+bool is_researcher(Service& service, const httplib::Request& request) {
   const auto header = request.get_header_value("Authorization");
+  const auto session = cookie(request, session_cookie);
+  if (header.empty() && session.empty()) return false;
+  const Error too_many("too_many", "too many wrong tokens; wait a little");
+  const auto client = client_of(request);
+  if (!service.failures.has_left(client)) throw too_many;
   const std::string scheme = "Bearer ";
-  if (header.starts_with(scheme))
-    return equal_in_constant_time(header.substr(scheme.size()), service.token);
-  return equal_in_constant_time(cookie(request, session_cookie), session_of(service.token));
+  const bool right = header.starts_with(scheme)
+                         ? equal_in_constant_time(header.substr(scheme.size()), service.token)
+                         : equal_in_constant_time(session, session_of(service.token));
+  if (!right && !service.failures.allow(client)) throw too_many;
+  return right;
+}
+
+void check_public_url(const std::string& url) {
+  const auto origin = origin_of(url);
+  const bool known = origin.starts_with("https://") || origin.starts_with("http://");
+  if (!url.empty() && (!known || origin.ends_with("://")))
+    throw bad_value("public_url", "must be like https://study.example.org");
+}
+
+bool is_local(const ServeOptions& options) {
+  return options.public_url.empty() && loopback(options.host);
+}
+
+std::shared_ptr<void> Allowance::take() {
+  if (left.fetch_sub(1) <= 0) {
+    ++left;
+    throw Error("busy", "too many wait already; ask again without waiting");
+  }
+  return {this, [](void* allowance) { ++static_cast<Allowance*>(allowance)->left; }};
 }
 
 void count_failure(Service& service, const httplib::Request& request) {
@@ -97,11 +142,10 @@ void check_permission(Service& service, const Route& route, const httplib::Reque
     check_origin(service, request);
     if (service.draining) throw Error("draining", "the server is stopping");
   }
-  if (route.access == Access::researcher && !is_researcher(service, request)) {
-    if (request.has_header("Authorization") || !cookie(request, session_cookie).empty())
-      count_failure(service, request);
+  const bool open = route.access == Access::anyone ||
+                    (route.access == Access::laboratory && is_local(service.options));
+  if (!open && !is_researcher(service, request))
     throw Error("unauthorized", "this needs the researcher's token", "Authorization");
-  }
 }
 
 }  // namespace penumbra::server::http

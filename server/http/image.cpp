@@ -29,8 +29,8 @@ void get_plan(Call& call) {
 }  // namespace
 
 void add_image_routes(std::vector<Route>& table) {
-  table.push_back({"GET", "/api/v1/image", Access::anyone, get_image});
-  table.push_back({"GET", "/api/v1/plan", Access::anyone, get_plan});
+  table.push_back({"GET", "/api/v1/image", Access::laboratory, get_image});
+  table.push_back({"GET", "/api/v1/plan", Access::laboratory, get_plan});
 }
 
 }  // namespace penumbra::server::http

@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <spdlog/spdlog.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -219,6 +220,7 @@ void Listener::answer(Owned connection) {
   auto state = Connection::State::ready;
   while (state == Connection::State::ready) {
     if (!answer_one(*connection)) {
+      if (connection->all_used()) return;
       connection->part({});
       break;
     }
@@ -235,10 +237,15 @@ void Listener::answer(Owned connection) {
 bool Listener::answer_one(Connection& connection) {
   RequestStream stream(connection, stopping);
   bool closed = false;
-  const bool answered =
-      process_request(stream, stopping || !connection.request().keeps_alive, closed,
-                      [&](httplib::Request&) { stream.set_understood(); });
-  return answered && !closed && stream.reusable();
+  try {
+    const bool answered =
+        process_request(stream, stopping || !connection.request().keeps_alive, closed,
+                        [&](httplib::Request&) { stream.set_understood(); });
+    return answered && !closed && stream.reusable();
+  } catch (const std::exception& error) {
+    spdlog::error("a request failed outside of its handler: {}", error.what());
+    return false;
+  }
 }
 
 Connection::State Listener::next_request(Connection& connection) {

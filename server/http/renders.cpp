@@ -107,6 +107,7 @@ RenderRecord submit(Call& call, const nlohmann::json& request) {
 RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  const auto place = call.service.waits.take();
   const auto& connection = RequestStream::current();
   RenderRecord seen = record;
   while (!is_over(seen)) {
@@ -129,15 +130,11 @@ void send_artefact(Call& call, const RenderRecord& record, const std::string& na
                 record.error.value("field", ""));
   if (record.status != "done") throw Error("conflict", "the render is " + record.status, "status");
   // The artefacts of one render have addresses of their own, so that its id serves as tag for each.
-  const std::string tag = '"' + record.id + '"';
   auto& response = call.response;
-  response.set_header("ETag", tag);
-  response.set_header("Cache-Control", "public, max-age=31536000, immutable");
-  const auto known = call.request.get_header_value("If-None-Match");
-  if (known == "*" || known.find(tag) != std::string::npos) {
-    response.status = 304;
-    return;
-  }
+  // What needs a token belongs into no cache that others are served from.
+  const std::string whose = is_local(call.service.options) ? "public" : "private";
+  response.set_header("Cache-Control", whose + ", max-age=31536000, immutable");
+  if (client_has(call.request, response, record.id)) return;
   const auto bytes = call.service.renders->artefact(record.id, name);
   if (!bytes) {
     response.headers.erase("ETag");
@@ -150,14 +147,14 @@ void send_artefact(Call& call, const RenderRecord& record, const std::string& na
 
 void add_render_routes(std::vector<Route>& table) {
   const std::string one = "/api/v1/renders/{id}";
-  table.push_back({"POST", "/api/v1/renders", Access::anyone, post_render, 256 << 10});
-  table.push_back({"GET", one, Access::anyone, get_render});
-  table.push_back({"DELETE", one, Access::anyone, cancel_render});
-  table.push_back({"GET", one + "/image.png", Access::anyone, get_artefact<picture>});
-  table.push_back({"GET", one + "/image.exr", Access::anyone, get_artefact<linear>});
-  table.push_back({"GET", one + "/visibility.exr", Access::anyone, get_artefact<visibility>});
-  table.push_back({"GET", one + "/error.png", Access::anyone, get_artefact<difference>});
-  table.push_back({"GET", one + "/events", Access::anyone, get_events});
+  table.push_back({"POST", "/api/v1/renders", Access::laboratory, post_render, 256 << 10});
+  table.push_back({"GET", one, Access::laboratory, get_render});
+  table.push_back({"DELETE", one, Access::laboratory, cancel_render});
+  table.push_back({"GET", one + "/image.png", Access::laboratory, get_artefact<picture>});
+  table.push_back({"GET", one + "/image.exr", Access::laboratory, get_artefact<linear>});
+  table.push_back({"GET", one + "/visibility.exr", Access::laboratory, get_artefact<visibility>});
+  table.push_back({"GET", one + "/error.png", Access::laboratory, get_artefact<difference>});
+  table.push_back({"GET", one + "/events", Access::laboratory, get_events});
 }
 
 }  // namespace penumbra::server::http

@@ -19,7 +19,8 @@ inline bool is_over(const RenderRecord& record) {
 /// Hands a request to the render service, within the limit per client.
 RenderRecord submit(Call& call, const nlohmann::json& request);
 
-/// Waits until the render is over or `seconds` have passed. A client that hangs up is noticed
+/// Waits until the render is over or `seconds` have passed; one of a bounded number who may (busy
+/// beyond). A client that hangs up is noticed
 /// within a second; the render is then cancelled unless others wait for it.
 RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds);
 

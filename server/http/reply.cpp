@@ -26,7 +26,7 @@ int status_of(const std::string& code) {
       {"bad_value", 400},   {"unauthorized", 401}, {"forbidden", 403}, {"not_found", 404},
       {"not_allowed", 405}, {"conflict", 409},     {"cancelled", 409}, {"too_large", 413},
       {"unsupported", 422}, {"unreadable", 422},   {"too_many", 429},  {"too_many_headers", 431},
-      {"too_long", 414},    {"too_slow", 408},     {"device", 500},    {"internal", 500},
+      {"too_long", 414},    {"too_slow", 408},     {"device", 503},    {"internal", 500},
       {"busy", 503},        {"storage", 503},      {"draining", 503},  {"worker", 503},
       {"deadline", 504},
   };
@@ -41,6 +41,16 @@ nlohmann::json error_body(const Error& error) {
 void send_json(httplib::Response& response, int status, const nlohmann::json& body) {
   response.status = status;
   response.set_content(text_of(body), "application/json");
+}
+
+bool client_has(const httplib::Request& request, httplib::Response& response,
+                const std::string& tag) {
+  const std::string quoted = '"' + tag + '"';
+  response.set_header("ETag", quoted);
+  const auto known = request.get_header_value("If-None-Match");
+  if (known != "*" && known.find(quoted) == std::string::npos) return false;
+  response.status = 304;
+  return true;
 }
 
 void send_error(httplib::Response& response, const Error& error) {

@@ -8,8 +8,9 @@
 #include "renderer/error.h"
 
 namespace httplib {
+struct Request;
 struct Response;
-}
+}  // namespace httplib
 
 namespace penumbra::server::http {
 
@@ -20,6 +21,11 @@ int status_of(const std::string& code);
 nlohmann::json error_body(const Error& error);
 
 void send_json(httplib::Response& response, int status, const nlohmann::json& body);
+
+/// True where the client has what goes by this tag already; the answer then is 304, without body.
+/// Sets the tag in either case.
+bool client_has(const httplib::Request& request, httplib::Response& response,
+                const std::string& tag);
 
 /// Error body, state, and Retry-After where trying again helps.
 void send_error(httplib::Response& response, const Error& error);

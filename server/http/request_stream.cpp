@@ -11,7 +11,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace penumbra::server::http {
 namespace {
@@ -33,6 +37,29 @@ void read_end(const sockaddr_storage& address, std::string& text, int& port) {
     port = ntohs(six.sin6_port);
   }
   text = buffer;
+}
+
+/// True where a program of this machine (nginx is one) only ended its sending by the connection
+/// between these ports. Its socket then still has an owner, which Linux tells by an inode that is
+/// not zero (proc(5)). Of other machines nothing more is known than that they send no more.
+bool still_reads(int from_port, int to_port) {
+  for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+    std::ifstream file(table);
+    std::string line;
+    while (std::getline(file, line)) {
+      std::istringstream words(line);
+      std::vector<std::string> word(10);
+      for (auto& each : word) words >> each;
+      const auto port = [](const std::string& end) {
+        const auto colon = end.find(':');
+        return colon == std::string::npos ? -1 : std::stoi(end.substr(colon + 1), nullptr, 16);
+      };
+      constexpr std::size_t local = 1, remote = 2, inode = 9;
+      if (word[inode] != "0" && port(word[local]) == from_port && port(word[remote]) == to_port)
+        return true;
+    }
+  }
+  return false;
 }
 
 /// The head without `Expect`: the stream itself tells the client to go on, once somebody reads.
@@ -72,15 +99,21 @@ RequestStream& RequestStream::current() {
 
 bool RequestStream::closed_by_peer() const {
   char byte = 0;
-  return ::recv(connection.descriptor, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+  if (::recv(connection.descriptor, &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0) return false;
+  std::string address;
+  int here = 0;
+  int there = 0;
+  get_local_ip_and_port(address, here);
+  get_remote_ip_and_port(address, there);
+  return !still_reads(there, here);
 }
 
 void RequestStream::finish_head(httplib::Response& response) {
-  if (!understood || !connection.framing.done()) response.headers.erase("Connection");
-  if (!understood || !connection.framing.done()) response.set_header("Connection", "close");
-  if (response.get_header_value("Connection") != "close") return;
+  response.headers.erase("Keep-Alive");  // what it promises is the library's, not the listener's
+  closing = response.get_header_value("Connection") == "close";
+  if (closing || (understood && connection.framing.done())) return;
   closing = true;
-  response.headers.erase("Keep-Alive");
+  response.set_header("Connection", "close");
 }
 
 ssize_t RequestStream::read(char* into, std::size_t size) {

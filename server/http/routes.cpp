@@ -66,7 +66,11 @@ void answer(Service& service, const httplib::Request& request, httplib::Response
     if (reader != nullptr) call.body = read_body(request, *reader, found.route->largest_body);
     found.route->handle(call);
   } catch (...) {
-    send_error(response, error_of(std::current_exception()));
+    const Error error = error_of(std::current_exception());
+    send_error(response, error);
+    const auto* path = found.route != nullptr ? found.route->path.c_str() : "(no route)";
+    if (response.status >= 500)
+      spdlog::warn("{} {} failed: {} ({})", request.method, path, error.what(), error.code);
   }
   set_security_headers(response);
   const std::chrono::duration<double, std::milli> elapsed =

@@ -14,9 +14,9 @@ struct Service;
 
 /// Who may call a route.
 enum class Access {
-  anyone,
-  researcher,   ///< holder of the access token, by header or session cookie
-  participant,  ///< the path holds a person's token or code: unknown ones are rate limited
+  anyone,      ///< what participants need; their tokens and codes stand in the path
+  laboratory,  ///< anyone where only this machine reaches the server, otherwise as `researcher`
+  researcher,  ///< holder of the access token, by header or session cookie
 };
 
 /// One request on its way through a handler.

@@ -48,7 +48,7 @@ void delete_scene(Call& call) {
 }  // namespace
 
 void add_scene_routes(std::vector<Route>& table) {
-  table.push_back({"GET", "/api/v1/scenes", Access::anyone, list_scenes});
+  table.push_back({"GET", "/api/v1/scenes", Access::laboratory, list_scenes});
   table.push_back({"PUT", "/api/v1/scenes/{id}", Access::researcher, put_scene, largest_scene});
   table.push_back({"DELETE", "/api/v1/scenes/{id}", Access::researcher, delete_scene});
 }

@@ -4,9 +4,11 @@
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
 #include <openssl/rand.h>
+#include <spdlog/spdlog.h>
 
 #include <array>
 #include <cstring>
+#include <set>
 #include <vector>
 
 #include "renderer/error.h"
@@ -30,6 +32,19 @@ std::string hexadecimal(const unsigned char* bytes, std::size_t count) {
     text += digits[bytes[i] & 15];
   }
   return text;
+}
+
+/// Who may write the file chooses the token; who may read it has it.
+void check_permissions(const std::filesystem::path& file) {
+  using std::filesystem::perms;
+  const auto granted = std::filesystem::status(file).permissions();
+  const auto others = [&](perms group, perms world) {
+    return (granted & (group | world)) != perms::none;
+  };
+  if (others(perms::group_write, perms::others_write))
+    throw bad_value("token_file", file.string() + " can be changed by others; chmod 600 it");
+  if (others(perms::none, perms::others_read))
+    spdlog::warn("{} can be read by everybody on this machine; chmod 600 it", file.string());
 }
 
 }  // namespace
@@ -90,11 +105,17 @@ std::string keyed_digest(std::string_view key, std::string_view text) {
 std::string researcher_token(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file))
     storage::write_file_durably(file, random_token() + "\n", 0600);
+  check_permissions(file);
   std::string token = storage::read_file(file);
   while (!token.empty() && (token.back() == '\n' || token.back() == '\r' || token.back() == ' '))
     token.pop_back();
-  if (token.size() < 16)
-    throw bad_value("token_file", file.string() + " must hold a token of at least 16 characters");
+  constexpr std::size_t shortest = 16;
+  constexpr std::size_t least_distinct = 6;  // of characters; equal or alternating ones are guessed
+  const std::set<char> distinct(token.begin(), token.end());
+  if (token.size() < shortest || distinct.size() < least_distinct)
+    throw bad_value("token_file", file.string() +
+                                      " must hold a token of at least 16 characters, six of them "
+                                      "different");
   return token;
 }
 

@@ -25,10 +25,17 @@ namespace penumbra::server::http {
 namespace {
 
 constexpr std::size_t most_connections = 4096;
-constexpr std::size_t most_requests = 512;  // answered at once; more wait for their turn
+/// Answered at once; more wait for their turn. Service::waits leaves some for short requests.
+constexpr std::size_t most_requests = 512;
 /// The other port is for one or two programs that watch.
 constexpr std::size_t most_watchers = 64;
 constexpr std::size_t watching_threads = 8;
+
+std::size_t largest_body() {
+  std::size_t largest = 0;
+  for (const auto& route : routes()) largest = std::max(largest, route.largest_body);
+  return largest;
+}
 
 ListenerOptions listener_options(Service& service, std::size_t threads, std::size_t connections,
                                  std::vector<std::string> methods) {
@@ -62,11 +69,14 @@ struct Server::State {
       : service(options, make_renders),
         api(listener_options(service, most_requests, most_connections, methods_of_routes())),
         operations(listener_options(service, watching_threads, most_watchers, {"GET", "HEAD"})) {
+    check_public_url(options.public_url);
     install(api, service);
+    api.set_payload_max_length(largest_body());
+    operations.set_payload_max_length(0);
     install_operations(operations, service);
     api_port = api.bind(options.host, options.port, "port");
     if (options.ops_port >= 0)
-      operations_port = operations.bind(options.host, options.ops_port, "ops_port");
+      operations_port = operations.bind(options.ops_host, options.ops_port, "ops_port");
   }
 };
 
@@ -121,15 +131,25 @@ void note_signal(int) {
   [[maybe_unused]] const auto written = ::write(signal_pipe[1], &byte, 1);
 }
 
-/// SIGTERM and SIGINT become readable; a full disk or a client that left must not kill the process.
+/// SIGTERM, SIGINT and SIGHUP become readable; a full disk or a client that left must not kill the
+/// process.
 void install_signals() {
   if (::pipe(signal_pipe.data()) != 0) throw Error("internal", "no pipe for signals");
   struct sigaction action {};
   action.sa_handler = note_signal;
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// Every client takes a descriptor; shells allow few by default.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = std::max(limit.rlim_cur, std::min<rlim_t>(limit.rlim_max, 2 * most_connections));
+  ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 void wait_for_signal() {
@@ -147,6 +167,8 @@ void print_addresses(const ServeOptions& options, const Server& server) {
   while (base.ends_with('/')) base.pop_back();
   std::cout << "Participants: " << base << "/s/thesis-2007\n"
             << "Researchers:  " << base << "/lab?token=" << server.token() << std::endl;
+  if (!is_local(options) && !base.starts_with("https://"))
+    spdlog::warn("these addresses are not encrypted: everyone on the way reads the token");
 }
 
 }  // namespace
@@ -154,6 +176,7 @@ void print_addresses(const ServeOptions& options, const Server& server) {
 int serve(const ServeOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("penumbra"));
   install_signals();
+  raise_descriptor_limit();
   RenderServiceOptions render_options;
   render_options.data = options.data;
   render_options.device = options.device;
@@ -164,7 +187,8 @@ int serve(const ServeOptions& options) {
   Server server(options, [&] { return make_render_service(render_options); });
   server.start();
   print_addresses(options, server);
-  if (server.ops_port() > 0) spdlog::info("health and metrics on port {}", server.ops_port());
+  if (server.ops_port() > 0)
+    spdlog::info("health and metrics on {}:{}", options.ops_host, server.ops_port());
   wait_for_signal();
   spdlog::info("stopping; running requests have {} s", options.drain_deadline_s);
   auto stopped =

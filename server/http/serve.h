@@ -13,7 +13,8 @@ namespace penumbra::server::http {
 
 struct ServeOptions {
   std::string host = "127.0.0.1";
-  int port = 8080;      ///< 0 picks a free one, which is printed
+  int port = 8080;  ///< 0 picks a free one, which is printed
+  std::string ops_host = "127.0.0.1";
   int ops_port = 8081;  ///< /healthz /readyz /metrics; 0 picks a free one, below 0: none
   std::filesystem::path data = "data";
   std::string device;  ///< as RendererOptions::device

@@ -33,6 +33,7 @@ struct Service {
   RateLimiter failures{30, 0.5};     ///< wrong tokens and codes
   RateLimiter enrolments{120, 1};    ///< per client behind the proxy: a lab shares one address
   RateLimiter render_calls{240, 4};  ///< per client behind the proxy
+  Allowance waits{384};              ///< of serve.cpp's threads
   std::atomic<bool> draining{false};
   Publisher publisher;
   Sweeps sweeps;

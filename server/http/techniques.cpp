@@ -12,7 +12,7 @@ void list_techniques(Call& call) {
 }  // namespace
 
 void add_technique_routes(std::vector<Route>& table) {
-  table.push_back({"GET", "/api/v1/techniques", Access::anyone, list_techniques});
+  table.push_back({"GET", "/api/v1/techniques", Access::laboratory, list_techniques});
 }
 
 }  // namespace penumbra::server::http

@@ -4,6 +4,7 @@
 
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "server/http/routes.h"
 #include "server/http/secrets.h"
@@ -76,8 +77,121 @@ TEST_F(AccessToTheServer, IsNotGuessed) {
   for (int i = 0; i < 60; ++i)
     states.insert(client->Get("/api/v1/studies", {{"Authorization", "Bearer guess"}})->status);
   EXPECT_EQ(states, (std::set<int>{401, 429}));
-  body_of(researcher->Get("/api/v1/studies"), 200, "StudyList");
+  // The right guess among them would tell itself; it too has to wait until there is one left.
+  EXPECT_EQ(error_of(researcher->Get("/api/v1/studies"), 429), "too_many");
   EXPECT_EQ(client->Get("/api/v1/participants/guess")->status, 429);
+  EXPECT_EQ(error_of(client->Get("/lab?token=" + server->token()), 429), "too_many");
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  body_of(researcher->Get("/api/v1/studies"), 200, "StudyList");
+}
+
+TEST_F(AccessToTheServer, PreviewsAreNoPlaceToGuessAt) {
+  ASSERT_EQ(publish("thesis-2007"), "open");
+  std::set<int> states;
+  for (int i = 0; i < 60; ++i)
+    states.insert(client
+                      ->Post("/api/v1/studies/thesis-2007/participants",
+                             {{"Authorization", "Bearer guess"}}, R"({"preview":true})",
+                             "application/json")
+                      ->status);
+  EXPECT_EQ(states, (std::set<int>{401, 429}));
+}
+
+TEST_F(AccessToTheServer, DraftsAreNotFound) {
+  const auto unknown = client->Get("/s/unknown");
+  const auto draft = client->Get("/s/thesis-2007");
+  EXPECT_EQ(error_of(draft, 404), "not_found");
+  EXPECT_EQ(draft->body, unknown->body);
+  ASSERT_EQ(publish("thesis-2007"), "open");
+  EXPECT_EQ(client->Get("/s/thesis-2007")->status, 200);
+}
+
+/// What participants need, after the contract; all else is the researcher's.
+const std::set<std::string> participants_calls{
+    "GET /s/{study}",
+    "GET /s/{study}/welcome",
+    "GET /assets/{folder}/{file}",
+    "POST /api/v1/studies/{id}/participants",
+    "GET /api/v1/participants/{token}",
+    "PUT /api/v1/participants/{token}/pages/{page}",
+    "GET /api/v1/participants/{token}/pages/{page}/pictures/{slot}",
+    "POST /api/v1/participants/{token}/complete",
+    "DELETE /api/v1/withdrawals/{code}",
+    "GET /lab",  // asks for the token itself
+};
+
+class AccessFromOutside : public RunningServer {
+ protected:
+  void expect_the_researcher_alone() {
+    for (const auto& route : routes()) {
+      const bool open = participants_calls.contains(route.method + " " + route.path);
+      const auto result = call(*client, route.method, example(route.path), {});
+      if (open)
+        EXPECT_TRUE(result->status != 401 || route.path == "/lab") << route.method << route.path;
+      else
+        EXPECT_EQ(error_of(result, 401), "unauthorized") << route.method << " " << route.path;
+    }
+    EXPECT_EQ(error_of(client->Get("/api/v1/image?scene=boxes&technique=none"), 401),
+              "unauthorized");
+    EXPECT_EQ(renders->submitted, 0);
+    const auto image = researcher->Get("/api/v1/image?scene=boxes&technique=none");
+    EXPECT_EQ(image->status, 200);
+    EXPECT_TRUE(image->get_header_value("Cache-Control").starts_with("private"));
+    EXPECT_EQ(client->Get("/lab?token=" + server->token())->status, 303);
+  }
+};
+
+TEST_F(AccessFromOutside, NeedsTheTokenWhereThereIsAPublicAddress) {
+  stop();
+  options.public_url = "https://study.example.org";
+  start();
+  expect_the_researcher_alone();
+}
+
+TEST_F(AccessFromOutside, NeedsTheTokenWhereOtherMachinesReachTheServer) {
+  stop();
+  options.host = "0.0.0.0";
+  start();
+  expect_the_researcher_alone();
+}
+
+TEST_F(AccessFromOutside, IsOpenToProgramsOfThisMachineAlone) {
+  body_of(client->Get("/api/v1/scenes"), 200, "SceneList");
+  EXPECT_EQ(client->Get("/api/v1/image?scene=boxes&technique=none")->status, 200);
+  // A page of another site whose name was pointed at this machine.
+  EXPECT_EQ(error_of(client->Post("/api/v1/renders",
+                                  {{"Host", "evil.example"}, {"Origin", "http://evil.example"}},
+                                  R"({"scene":"boxes","technique":"none"})", "application/json"),
+                     403),
+            "forbidden");
+}
+
+TEST_F(AccessFromOutside, TrustsNoHostWhereThePublicAddressIsKnown) {
+  stop();
+  options.public_url = "https://study.example.org";
+  start();
+  const auto from = [&](const std::string& host, const std::string& origin) {
+    return researcher->Post("/api/v1/studies/unknown/publish", {{"Host", host}, {"Origin", origin}},
+                            "", "application/json");
+  };
+  EXPECT_EQ(from("evil.example", "https://evil.example")->status, 403);
+  EXPECT_EQ(from("study.example.org", "http://study.example.org")->status, 403);
+  EXPECT_EQ(from("anything", "https://study.example.org")->status, 404);
+}
+
+TEST_F(AccessFromOutside, PublicAddressesThatAreNoneAreNamed) {
+  for (const std::string address : {"study.example.org", "ftp://x", "https://", "http:///x"}) {
+    ServeOptions wrong;
+    wrong.port = wrong.ops_port = 0;
+    wrong.data = folder.path / "other";
+    wrong.public_url = address;
+    try {
+      Server second(wrong, [] { return std::make_unique<FakeRenders>(); });
+      ADD_FAILURE() << address;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.field, "public_url");
+    }
+  }
 }
 
 TEST_F(AccessToTheServer, TokensNeverReachTheLog) {
@@ -96,7 +210,7 @@ TEST_F(AccessToTheServer, TokensNeverReachTheLog) {
 }
 
 TEST_F(AccessToTheServer, EveryAnswerCarriesTheHeadersThatPagesNeed) {
-  for (const std::string path : {"/api/v1/scenes", "/nothing", "/s/thesis-2007", "/lab"}) {
+  for (const std::string path : {"/api/v1/scenes", "/nothing", "/s/thesis-2007/welcome", "/lab"}) {
     const auto result = client->Get(path);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->get_header_value("X-Content-Type-Options"), "nosniff") << path;
@@ -114,6 +228,37 @@ TEST_F(AccessToTheServer, TheTokenFileIsItsOwnersAlone) {
   const auto token = server->token();
   restart();
   EXPECT_EQ(server->token(), token);
+}
+
+std::string complaint_about(const std::filesystem::path& file) {
+  try {
+    researcher_token(file);
+    return "";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.field, "token_file");
+    return error.what();
+  }
+}
+
+TEST(Secrets, TokensThatOthersMayHaveChosenOrGuessAreRefused) {
+  using std::filesystem::perms;
+  TemporaryFolder folder;
+  const auto file = folder.path / "token";
+  const auto hold = [&](const std::string& token, unsigned mode) {
+    std::ofstream(file) << token << '\n';
+    std::filesystem::permissions(file, static_cast<perms>(mode));
+  };
+  hold("a-token-of-the-researcher", 0600);
+  EXPECT_EQ(researcher_token(file), "a-token-of-the-researcher");
+  for (const unsigned mode : {0622u, 0602u, 0620u, 0666u}) {
+    hold("a-token-of-the-researcher", mode);
+    EXPECT_NE(complaint_about(file).find("changed by others"), std::string::npos) << mode;
+  }
+  for (const std::string token :
+       {"", "short", "aaaaaaaaaaaaaaaaaaaaaaaa", "abababababababababababab"}) {
+    hold(token, 0600);
+    EXPECT_NE(complaint_about(file).find("at least 16"), std::string::npos) << token;
+  }
 }
 
 TEST(Secrets, HoldAtLeast128BitsAndDiffer) {

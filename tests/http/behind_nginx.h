@@ -27,6 +27,7 @@ inline std::string text_of(const std::filesystem::path& file) {
 class BehindNginx : public RunningServer {
  protected:
   void SetUp() override {
+    options.public_url = "https://study.example.org";
     RunningServer::SetUp();
     make_certificate();
     port = free_port();
@@ -41,6 +42,7 @@ class BehindNginx : public RunningServer {
     outside = std::make_unique<httplib::SSLClient>("127.0.0.1", port);
     outside->enable_server_certificate_verification(false);
     outside->set_default_headers({{"Host", "study.example.org"}});
+    as_researcher = {{"Authorization", "Bearer " + server->token()}};
     outside->set_connection_timeout(2);
     outside->set_read_timeout(10);
     bool up = false;
@@ -108,6 +110,7 @@ class BehindNginx : public RunningServer {
   int port = 0;
   pid_t process = -1;
   std::unique_ptr<httplib::SSLClient> outside;
+  httplib::Headers as_researcher;
 };
 
 }  // namespace penumbra::server::http

@@ -56,13 +56,13 @@ TEST_F(Operations, IdleConnectionsDoNotHoldAStopUp) {
 }
 
 TEST_F(Operations, OneProcessOwnsADataFolder) {
-  ServeOptions options;
-  options.port = 0;
-  options.ops_port = 0;
-  options.data = folder.path / "data";
+  ServeOptions theirs;
+  theirs.port = 0;
+  theirs.ops_port = 0;
+  theirs.data = folder.path / "data";
   bool rendered = false;
   try {
-    Server second(options, [&] {
+    Server second(theirs, [&] {
       rendered = true;
       return std::make_unique<FakeRenders>();
     });
@@ -74,12 +74,12 @@ TEST_F(Operations, OneProcessOwnsADataFolder) {
 }
 
 TEST_F(Operations, APortInUseIsNamed) {
-  ServeOptions options;
-  options.port = server->port();
-  options.ops_port = -1;
-  options.data = folder.path / "other";
+  ServeOptions theirs;
+  theirs.port = server->port();
+  theirs.ops_port = -1;
+  theirs.data = folder.path / "other";
   try {
-    Server second(options, [] { return std::make_unique<FakeRenders>(); });
+    Server second(theirs, [] { return std::make_unique<FakeRenders>(); });
     FAIL() << "two servers share a port";
   } catch (const Error& error) {
     EXPECT_EQ(error.field, "port");

@@ -1,5 +1,6 @@
 #include <thread>
 
+#include "tests/http/raw_request.h"
 #include "tests/http/running_server.h"
 
 namespace penumbra::server::http {
@@ -91,6 +92,19 @@ TEST_F(Renders, CanBeCancelled) {
   EXPECT_EQ(body_of(client->Delete("/api/v1/renders/" + id), 200, "Render")["status"], "cancelled");
   EXPECT_EQ(error_of(client->Get("/api/v1/renders/" + id + "/image.png"), 409), "conflict");
   EXPECT_EQ(error_of(client->Delete("/api/v1/renders/nothing"), 404), "not_found");
+}
+
+TEST_F(Renders, AreKeptForClientsThatOnlyEndedTheirSending) {
+  RawConnection half(server->port());
+  half.send("GET /api/v1/image?scene=slow&technique=half HTTP/1.1\r\nHost: x\r\n\r\n");
+  half.stop_sending();
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  const auto id = body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "half"}}), 202,
+                          "Render")["id"]
+                      .get<std::string>();
+  EXPECT_EQ(renders->find(id)->status, "queued");
+  renders->finish(id);
+  EXPECT_EQ(half.read(4.0).status(), 200);
 }
 
 TEST_F(Renders, AreCancelledWhenTheClientHangsUp) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "server/http/serve.h"
 #include "tests/http/fake_renders.h"
@@ -23,7 +24,6 @@ class RunningServer : public testing::Test {
   void SetUp() override { start(); }
 
   void start() {
-    ServeOptions options;
     options.port = 0;
     options.ops_port = 0;
     options.data = folder.path / "data";
@@ -80,7 +80,20 @@ class RunningServer : public testing::Test {
     return json::parse(result->body).at("error").at("field").get<std::string>();
   }
 
+  /// Draft studies are published, with the fake's pictures, before anybody may enter.
+  std::string publish(const std::string& study) {
+    const auto path = "/api/v1/studies/" + study;
+    researcher->Post(path + "/publish", "", "application/json");
+    std::string status;
+    for (int i = 0; i < 400 && status != "open"; ++i) {
+      status = json::parse(researcher->Get(path)->body).value("status", "");
+      if (status != "open") std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    }
+    return status;
+  }
+
   TemporaryFolder folder;
+  ServeOptions options;  ///< of the next start
   FakeRenders* renders = nullptr;
   std::unique_ptr<Server> server;
   std::unique_ptr<httplib::Client> client;

@@ -64,7 +64,18 @@ TEST(Responses, CellsThatASpreadsheetWouldRunAreNeutralised) {
   EXPECT_EQ(csv_text("@SUM(A1)"), "'@SUM(A1)");
   EXPECT_EQ(csv_text("\tx"), "'\tx");
   EXPECT_EQ(csv_text(std::string_view("\0x", 2)), std::string("'\0x", 3));
+  EXPECT_EQ(csv_text(" =1"), "' =1");
+  EXPECT_EQ(csv_text("   @x"), "'   @x");
+  EXPECT_EQ(csv_text("\n=1"), "\"'\n=1\"");
+  EXPECT_EQ(csv_text("\r\n=1"), "\"'\r\n=1\"");
+  EXPECT_EQ(csv_text("\xEF\xBC\x9D"
+                     "1"),
+            "'\xEF\xBC\x9D"
+            "1")
+      << "U+FF1D, a wide equals sign";
   EXPECT_EQ(csv_text("a=b"), "a=b");
+  EXPECT_EQ(csv_text(" a"), " a");
+  EXPECT_EQ(csv_text("\xEF\xBC\x81"), "\xEF\xBC\x81") << "U+FF01, a wide exclamation mark";
 }
 
 TEST(Responses, CellsAreQuotedAsRfc4180Says) {

@@ -1,9 +1,32 @@
 // Loading the pictures of a page: all of them decoded, or none shown.
 
-function decoded(url) {
-  const image = new Image();
-  image.src = url;
-  return image.decode().then(() => image);
+const waits_ms = [500, 1000, 2000, 4000, 8000];
+
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/// True where the same address may well be answered later: a busy server, or none within reach.
+async function worth_another_try(url) {
+  try {
+    const { ok, status } = await fetch(url);
+    return ok || status === 429 || status >= 500;
+  } catch {
+    return true;
+  }
+}
+
+/// The picture, asked for again where the server was busy. A whole room may open a page at once.
+async function decoded(url) {
+  for (let attempt = 0; ; ++attempt) {
+    const image = new Image();
+    image.src = url;
+    try {
+      await image.decode();
+      return image;
+    } catch (error) {
+      if (attempt === waits_ms.length || !(await worth_another_try(url))) throw error;
+    }
+    await pause(waits_ms[attempt] * (0.5 + Math.random()));
+  }
 }
 
 const letter_of = (position) =>
