@@ -300,6 +300,28 @@ test("a picture that cannot be loaded is asked for again, and the failure is on 
   assert.equal(sent.load_failures, 1);
 });
 
+test("pictures that a busy server refuses come a little later, without a word", async () => {
+  let refused = 0;
+  let sent = null;
+  await visit(async (person) => {
+    await person.page.route(/\/pages\/0\/pictures\/1$/, (route) => {
+      if (refused === 3) return route.continue();
+      return route.fulfill({ status: refused++ === 0 ? 429 : 503 });
+    });
+    await person.press("I agree and want to take part");
+    await person.press("Show the first page");
+    await person.see_page(0);
+    person.page.on("request", (request) => request.method() === "PUT" && (sent = request.postDataJSON()));
+    await person.answer({ A: 0, B: 1, C: 2 });
+    await person.see_page(1);
+    // The browser itself notes each of them on its console.
+    assert.equal(person.faults.length, 3);
+    assert.ok(person.faults.splice(0).every((fault) => /status of (429|503)/.test(fault)));
+  });
+  assert.equal(refused, 3);
+  assert.ok(!sent.load_failures);
+});
+
 test("with the withdrawal code a person deletes every answer", async () => {
   const rows = await visit(async (person) => {
     await person.enter();

@@ -1,16 +1,16 @@
 // Loading the pictures of a page: all of them decoded, or none shown.
 
+import { sleep } from "/assets/shared/http.js";
+
 const waits_ms = [500, 1000, 2000, 4000, 8000];
 
-const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-
-/// True where the same address may well be answered later: a busy server, or none within reach.
+/// True where the server was busy and may soon not be. Without a connection the person decides.
 async function worth_another_try(url) {
   try {
     const { ok, status } = await fetch(url);
     return ok || status === 429 || status >= 500;
   } catch {
-    return true;
+    return false;
   }
 }
 
@@ -25,7 +25,7 @@ async function decoded(url) {
     } catch (error) {
       if (attempt === waits_ms.length || !(await worth_another_try(url))) throw error;
     }
-    await pause(waits_ms[attempt] * (0.5 + Math.random()));
+    await sleep(waits_ms[attempt] * (0.5 + Math.random()));
   }
 }
 
