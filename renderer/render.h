@@ -61,6 +61,8 @@ struct RenderRequest {
   bool uncertainty = false;  ///< also tell the error that finitely many light points leave
   std::string diagnostic;    ///< name of a diagnostic picture of the technique, or empty
   std::uint32_t frames = 1;  ///< counted frames; above 1 one uncounted frame goes first
+  /// Before the counted frames draw others until a GPU's clocks are up and times steady.
+  bool settle = false;
   PlanRules rules;
 };
 
@@ -88,6 +90,7 @@ struct Cost {
   double p95_ms = 0.0;
   double spread = 0.0;  ///< half the distance between quartiles, as a share of the median
   std::uint32_t frames = 0;
+  bool settled = true;          ///< false where `settle` was asked for and times never were steady
   double wall_median_ms = 0.0;  ///< submission to fence
   double create_ms = 0.0;       ///< pipelines, buffers, uploads and the uncounted frame
   std::vector<PassCost> passes;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace penumbra {
 
@@ -14,8 +15,12 @@ double quantile(std::vector<double> values, double probability) {
   return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
 }
 
+double device_ms(const std::vector<vulkan::PassRecord>& records) {
+  return std::accumulate(records.begin(), records.end(), 0.0,
+                         [](double sum, const auto& record) { return sum + record.ms; });
+}
+
 void CostReport::add(const std::vector<vulkan::PassRecord>& records, double wall_ms, bool counted) {
-  double sum = 0.0;
   for (const vulkan::PassRecord& record : records) {
     auto found = std::find_if(passes_.begin(), passes_.end(),
                               [&](const Pass& pass) { return pass.name == record.name; });
@@ -25,10 +30,9 @@ void CostReport::add(const std::vector<vulkan::PassRecord>& records, double wall
     }
     if (record.counted) found->counters = record.counters;
     if (counted) found->times.push_back(record.ms);
-    sum += record.ms;
   }
   if (!counted) return;
-  frame_times_.push_back(sum);
+  frame_times_.push_back(device_ms(records));
   wall_times_.push_back(wall_ms);
 }
 

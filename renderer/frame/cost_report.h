@@ -10,6 +10,9 @@ namespace penumbra {
 /// Linear interpolation between order statistics (type 7); 0 for no values.
 double quantile(std::vector<double> values, double probability);
 
+/// Device time of one frame: the sum of its passes.
+double device_ms(const std::vector<vulkan::PassRecord>& records);
+
 /// Gathers what the recorder measured, frame by frame.
 class CostReport {
  public:

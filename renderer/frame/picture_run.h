@@ -5,6 +5,7 @@
 #include "renderer/frame/cost_report.h"
 #include "renderer/frame/frame_run.h"
 #include "renderer/frame/round_sum.h"
+#include "renderer/frame/steady_times.h"
 
 namespace penumbra {
 
@@ -33,6 +34,9 @@ class PictureRun {
     void visit(Archive& archive);
   };
 
+  /// Draws frames that do not count until their times are steady (SteadyTimes); false where they
+  /// never were.
+  bool settle();
   void draw_frame(std::uint32_t index);
   void draw_round(const Window& window, std::uint32_t index);
   /// Whether the window at hand needs no further round.

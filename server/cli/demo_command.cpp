@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -13,6 +15,7 @@
 #include "server/jobs/durable_file.h"
 #include "server/jobs/render_service.h"
 #include "study/study.h"
+#include "techniques/registry.h"
 
 namespace penumbra::server::cli {
 namespace {
@@ -42,39 +45,82 @@ study::Study read_study(const fs::path& file) {
   return study::parse_study(*text);
 }
 
-/// Asks for every picture, one after the other: each is measured while nothing else draws.
-std::vector<Cell> draw_all(const study::Study& study, RenderService& service, double deadline_s) {
+/// Every picture of a study, page by page, and what to ask the service for.
+struct Plan {
   std::vector<Cell> cells;
   std::vector<json> requests;
+  std::vector<std::size_t> order;  ///< in which they are drawn
+};
+
+/// Drawn in the order in which they are worth looking at: first every scene as it really is, then
+/// technique by technique, so that whoever breaks off has whole rows of the table.
+Plan plan_of(const study::Study& study) {
+  Plan plan;
+  std::vector<std::pair<bool, std::size_t>> place;  ///< no truth; place on its page
   for (const study::Page& page : study.pages) {
     const study::PageRenders renders = study::page_renders(study, page);
     for (std::size_t i = 0; i < page.pictures.size(); ++i) {
-      cells.push_back({page.id, page.pictures[i].id, page.pictures[i].label, {}, {}, {}});
-      requests.push_back(renders.pictures[i]);
+      plan.order.push_back(plan.cells.size());
+      plan.cells.push_back({page.id, page.pictures[i].id, page.pictures[i].label, {}, {}, {}});
+      plan.requests.push_back(renders.pictures[i]);
+      plan.requests.back()["measure"] = true;
+      const std::string technique = renders.pictures[i].at("technique");
+      place.emplace_back(techniques::resolve(technique).technique->family != "truth", i);
     }
   }
+  std::stable_sort(plan.order.begin(), plan.order.end(),
+                   [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
+  return plan;
+}
+
+RenderRecord draw(const json& request, const Cell& cell, RenderService& service, double deadline_s,
+                  const std::function<void(double)>& show) {
+  RenderRecord record = service.submit(request);
+  while (record.status == "queued" || record.status == "running") {
+    show(record.progress);
+    record = service.wait_change(record.id, record, deadline_s).value_or(record);
+  }
+  if (record.status != "done")
+    throw Error(record.error.is_null() ? "internal" : record.error.value("code", "internal"),
+                cell.page + ", " + cell.picture + ": " +
+                    (record.error.is_null() ? record.status : record.error.value("message", "")));
+  return record;
+}
+
+/// Copies of a picture and of its error map under names for people. Returns the picture's path.
+fs::path write_pictures(const Cell& cell, RenderService& service, const fs::path& folder) {
+  const auto path = [&](const std::string& suffix) {
+    return folder / (cell.page + "-" + cell.picture + suffix + ".png");
+  };
+  for (const auto& [artefact, suffix] :
+       std::map<std::string, std::string>{{"image.png", ""}, {"error.png", "-error"}})
+    if (const auto bytes = service.artefact(cell.id, artefact))
+      write_durably(path(suffix), folder / ".new", *bytes);
+  return path("");
+}
+
+/// Asks for every picture, one after the other: each is measured while nothing else draws. Each
+/// lies in `folder` as soon as it is drawn.
+std::vector<Cell> draw_all(const study::Study& study, RenderService& service, double deadline_s,
+                           const fs::path& folder) {
+  Plan plan = plan_of(study);
+  fs::create_directories(folder);
   Progress progress("pictures of " + study.id);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    Cell& cell = cells[i];
+  for (std::size_t i = 0; i < plan.order.size(); ++i) {
+    Cell& cell = plan.cells[plan.order[i]];
     const auto show = [&](double part) {
-      progress.show((static_cast<double>(i) + part) / static_cast<double>(cells.size()),
+      progress.show((static_cast<double>(i) + part) / static_cast<double>(plan.order.size()),
                     cell.page + ", " + cell.picture);
     };
-    requests[i]["measure"] = true;
-    RenderRecord record = service.submit(requests[i]);
-    while (record.status == "queued" || record.status == "running") {
-      show(record.progress);
-      record = service.wait_change(record.id, record, deadline_s).value_or(record);
-    }
-    if (record.status != "done")
-      throw Error(record.error.is_null() ? "internal" : record.error.value("code", "internal"),
-                  cell.page + ", " + cell.picture + ": " +
-                      (record.error.is_null() ? record.status : record.error.value("message", "")));
+    const RenderRecord record =
+        draw(plan.requests[plan.order[i]], cell, service, deadline_s, show);
     cell.id = record.id;
     cell.cost = record.cost;
     cell.quality = record.quality;
+    const fs::path picture = write_pictures(cell, service, folder);
+    if (i == 0) progress.note("the first picture: " + picture.string());
   }
-  return cells;
+  return plan.cells;
 }
 
 std::string table_of(const std::vector<Cell>& cells,
@@ -107,25 +153,12 @@ std::string table_of(const std::vector<Cell>& cells,
   return table.text();
 }
 
-/// Copies of the pictures under names for people.
-void write_pictures(const std::vector<Cell>& cells, RenderService& service,
-                    const fs::path& folder) {
-  fs::create_directories(folder);
-  for (const Cell& cell : cells)
-    for (const auto& [artefact, suffix] :
-         std::map<std::string, std::string>{{"image.png", ""}, {"error.png", "-error"}})
-      if (const auto bytes = service.artefact(cell.id, artefact))
-        write_durably(folder / (cell.page + "-" + cell.picture + suffix + ".png"), folder / ".new",
-                      *bytes);
-}
-
 int demonstrate(const Session& session, const Options& options) {
   const study::Study study = read_study(options.study);
   const auto service = make_render_service(options.service);
-  const std::vector<Cell> cells = draw_all(study, *service, options.service.deadline_s);
   const fs::path folder =
-      options.pictures.empty() ? options.service.data / "pictures" : options.pictures;
-  write_pictures(cells, *service, folder);
+      options.pictures.empty() ? options.service.data / "demonstration" : options.pictures;
+  const std::vector<Cell> cells = draw_all(study, *service, options.service.deadline_s, folder);
   const json device = service->statistics().at("device");
   service->drain(0.0);
 
@@ -162,7 +195,7 @@ void add_demo_command(CLI::App& app, Session& session) {
   command->add_option("--device", options->service.device,
                       "Vulkan device: part of its name, or its index");
   command->add_option("--pictures", options->pictures,
-                      "Folder for the pictures; by default pictures in the data folder");
+                      "Folder for the pictures; by default demonstration in the data folder");
   add_json_flag(*command, session);
   command->callback([options, &session] {
     session.action = [options, &session] { return demonstrate(session, *options); };

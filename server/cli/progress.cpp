@@ -45,4 +45,8 @@ void Progress::show(double value, const std::string& what) {
   std::fflush(stderr);
 }
 
+void Progress::note(const std::string& line) {
+  std::fprintf(stderr, "%s%s\n", terminal_ && shown_ ? "\r\033[K" : "", line.c_str());
+}
+
 }  // namespace penumbra::server::cli

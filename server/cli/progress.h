@@ -16,6 +16,9 @@ class Progress {
   /// `value` 0..1; `what` is being done now.
   void show(double value, const std::string& what = {});
 
+  /// A line that stays, above the bar.
+  void note(const std::string& line);
+
  private:
   std::string title_;
   bool terminal_;

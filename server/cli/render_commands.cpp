@@ -90,7 +90,10 @@ std::string cost_text(const json& cost) {
   text << "frame        " << number(frame.at("median"), 3) << " ms median, "
        << number(frame.at("p95"), 3) << " ms p95, spread "
        << number(100.0 * frame.at("spread").get<double>(), 1) << "%, over "
-       << frame.at("frames").get<int>() << " frames\n"
+       << frame.at("frames").get<int>() << " frames"
+       << (frame.at("settled").get<bool>() ? "" : ", NOT SETTLED") << "\n"
+       << "none         " << number(frame.at("none_median"), 3) << " ms, of which it is "
+       << number(frame.at("over_none"), 2) << " times\n"
        << "create       " << number(cost.at("create_ms"), 1) << " ms\n"
        << "memory       " << cost.at("memory").at("over_none_bytes").get<std::uint64_t>()
        << " bytes over none\n";

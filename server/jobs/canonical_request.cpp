@@ -160,10 +160,28 @@ void identify(CanonicalRequest& canonical) {
   canonical.id = sha256(scenes::json_text(canonical.request)).substr(0, 32);
 }
 
-const TechniqueDescription& truth() {
+const TechniqueDescription& of_family(const std::string& family) {
   for (const TechniqueDescription& technique : techniques::all())
-    if (technique.family == "truth") return technique;
-  throw unsupported("this program has no technique of family truth: nothing can be measured");
+    if (technique.family == family) return technique;
+  throw unsupported("this program has no technique of family " + family +
+                    ": nothing can be measured");
+}
+
+/// The request with another technique at its defaults. Parameters common to all techniques (how
+/// light is encoded) are carried over. The id is still the old one.
+CanonicalRequest same_view(const CanonicalRequest& request, const TechniqueDescription& technique) {
+  ParameterValues parameters;
+  for (const Parameter& common : common_parameters())
+    parameters[common.name] = request.technique.parameters.at(common.name);
+
+  CanonicalRequest canonical;
+  canonical.scene = request.scene;
+  canonical.technique = techniques::resolve(technique.id, parameters);
+  canonical.request = request.request;
+  canonical.request["technique"] = technique.id;
+  canonical.request["parameters"] = techniques::values_to_json(canonical.technique.parameters);
+  canonical.request["diagnostic"] = "";
+  return canonical;
 }
 
 }  // namespace
@@ -214,20 +232,15 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
 }
 
 CanonicalRequest reference_of(const CanonicalRequest& request, const RequestContext& context) {
-  const TechniqueDescription& reference = truth();
-  ParameterValues parameters;
-  for (const Parameter& common : common_parameters())
-    parameters[common.name] = request.technique.parameters.at(common.name);
-
-  CanonicalRequest canonical;
-  canonical.scene = request.scene;
-  canonical.technique = techniques::resolve(reference.id, parameters);
-  canonical.request = request.request;
-  canonical.request["technique"] = reference.id;
-  canonical.request["parameters"] = techniques::values_to_json(canonical.technique.parameters);
+  CanonicalRequest canonical = same_view(request, of_family("truth"));
   canonical.request["seed"] = RenderRequest{}.seed;
-  canonical.request["diagnostic"] = "";
   canonical.request["device"] = context.device;
+  identify(canonical);
+  return canonical;
+}
+
+CanonicalRequest baseline_of(const CanonicalRequest& request) {
+  CanonicalRequest canonical = same_view(request, of_family("none"));
   identify(canonical);
   return canonical;
 }

@@ -47,6 +47,9 @@ CanonicalRequest read_request(const nlohmann::json& request, const RequestContex
 /// all techniques (how light is encoded) are carried over.
 CanonicalRequest reference_of(const CanonicalRequest& request, const RequestContext& context);
 
+/// The same view without shadows: what a technique's time is compared with.
+CanonicalRequest baseline_of(const CanonicalRequest& request);
+
 /// What the renderer draws for a canonical request, light overrides applied.
 RenderRequest to_render_request(const CanonicalRequest& request);
 

@@ -23,6 +23,11 @@ constexpr double measure_patience_s = 20.0;
 constexpr double timing_budget_ms = 2500.0;
 constexpr std::uint32_t fewest_frames = 1;
 
+/// The same for frames without shadows, which no technique's are faster than; at least two of them,
+/// so that what is compiled is not in their time.
+constexpr double baseline_budget_ms = 500.0;
+constexpr std::uint32_t fewest_baseline_frames = 2;
+
 /// A frame that takes longer is timed the once that it is drawn: what is compiled in it is a small
 /// part of it, and nobody gains by waiting for it again.
 constexpr double longest_repeated_ms = 2000.0;
@@ -31,9 +36,9 @@ json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-/// Frames that fit the budget at so many milliseconds each, the uncounted first one included.
-std::uint32_t affordable_frames(double frame_ms) {
-  const double count = frame_ms > 0.0 ? timing_budget_ms / frame_ms - 1.0 : default_frames;
+/// Frames that fit a budget at so many milliseconds each, the uncounted first one included.
+std::uint32_t affordable_frames(double frame_ms, double budget_ms = timing_budget_ms) {
+  const double count = frame_ms > 0.0 ? budget_ms / frame_ms - 1.0 : default_frames;
   return static_cast<std::uint32_t>(
       std::clamp(count, double{fewest_frames}, double{default_frames}));
 }
@@ -80,24 +85,73 @@ json cost_to_json(const Cost& cost) {
            {{"median", cost.median_ms},
             {"p95", cost.p95_ms},
             {"spread", cost.spread},
-            {"frames", cost.frames}}},
+            {"frames", cost.frames},
+            {"settled", cost.settled}}},
           {"wall_median_ms", cost.wall_median_ms},
           {"create_ms", cost.create_ms},
           {"passes", passes},
           {"memory", {{"over_none_bytes", bytes}, {"resources", resources}}}};
 }
 
-/// Times frames. `first` is the picture's own.
-json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first,
-                  const std::function<void(double)>& progress, std::vector<std::string>& notes) {
+/// Maps the parts of a task onto one bar.
+class Parts {
+ public:
+  Parts(const std::function<void(double)>& progress, int count)
+      : progress_(progress), count_(count) {}
+  std::function<void(double)> next() {
+    const int part = part_++;
+    return [this, part](double value) {
+      if (progress_) progress_((part + std::clamp(value, 0.0, 1.0)) / count_);
+    };
+  }
+
+ private:
+  const std::function<void(double)>& progress_;
+  int count_;
+  int part_ = 0;
+};
+
+/// Times frames of the technique. `first` is the picture's own.
+Cost time_frames(Renderer& renderer, const Task& task, const RenderResult& first,
+                 const std::function<void(double)>& progress, std::vector<std::string>& notes) {
   if (task.request.frames == 0 && frame_ms_of(first.cost) > longest_repeated_ms) {
     notes.push_back("timed over its first and only frame, which took " +
                     std::to_string(std::lround(frame_ms_of(first.cost))) + " ms");
-    return cost_to_json(first.cost);
+    return first.cost;
   }
   RenderRequest request = to_render_request(task.request);
   request.frames = frames_to_time(renderer, task, first.cost, notes);
-  return cost_to_json(renderer.render(request, {progress, {}, {}}).cost);
+  request.settle = true;
+  return renderer.render(request, {progress, {}, {}}).cost;
+}
+
+/// Times the same view without shadows, in the same breath: a device's clocks and a machine's other
+/// work change absolute times, and the ratio less.
+Cost time_baseline(Renderer& renderer, const Task& task, const Cost& cost,
+                   const std::function<void(double)>& progress) {
+  const CanonicalRequest baseline = baseline_of(task.request);
+  if (baseline.technique.technique == task.request.technique.technique) return cost;
+  RenderRequest request = to_render_request(baseline);
+  request.frames =
+      std::max(fewest_baseline_frames,
+               task.request.frames > 0 ? task.request.frames
+                                       : affordable_frames(frame_ms_of(cost), baseline_budget_ms));
+  request.settle = true;
+  return renderer.render(request, {progress, {}, {}}).cost;
+}
+
+json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first, Parts& parts,
+                  std::vector<std::string>& notes) {
+  const Cost cost = time_frames(renderer, task, first, parts.next(), notes);
+  const Cost baseline = time_baseline(renderer, task, cost, parts.next());
+  json document = cost_to_json(cost);
+  json& frame = document.at("frame_ms");
+  frame["settled"] = cost.settled && baseline.settled;
+  frame["none_median"] = baseline.median_ms;
+  frame["over_none"] = number_or_null(cost.median_ms / baseline.median_ms);
+  if (!frame.at("settled").get<bool>())
+    notes.push_back("the device's times never settled: do not compare them");
+  return document;
 }
 
 /// SSIM needs a window of 11 x 11; smaller pictures have none.
@@ -131,24 +185,6 @@ json measure_quality(const Task& task, const RenderResult& drawn, const Image8& 
           {"missing_shadow", judged(error.missing_shadow)}};
 }
 
-/// Maps the parts of a task onto one bar.
-class Parts {
- public:
-  Parts(const std::function<void(double)>& progress, int count)
-      : progress_(progress), count_(count) {}
-  std::function<void(double)> next() {
-    const int part = part_++;
-    return [this, part](double value) {
-      if (progress_) progress_((part + std::clamp(value, 0.0, 1.0)) / count_);
-    };
-  }
-
- private:
-  const std::function<void(double)>& progress_;
-  int count_;
-  int part_ = 0;
-};
-
 }  // namespace
 
 const std::vector<std::string>& artefact_names() {
@@ -168,7 +204,7 @@ json device_to_json(const DeviceInfo& device) {
 TaskResult run_task(Renderer& renderer, const Task& task,
                     const std::function<void(double)>& progress) {
   const auto wanted = [&task](const char* name) { return task.wants.contains(name); };
-  Parts parts(progress, 1 + int{wanted(want::cost)});
+  Parts parts(progress, wanted(want::cost) ? 3 : 1);
 
   // Draw once with everything that the wanted files are made of.
   RenderRequest request = to_render_request(task.request);
@@ -181,7 +217,7 @@ TaskResult run_task(Renderer& renderer, const Task& task,
     // Nothing else may draw while frames are timed, and the first may be the only one.
     const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
     drawn = renderer.render(request, {parts.next(), {}, {}});
-    result.cost = measure_cost(renderer, task, drawn, parts.next(), result.notes);
+    result.cost = measure_cost(renderer, task, drawn, parts, result.notes);
     if (!alone.held()) result.notes.push_back("measured while another render shared the device");
   } else {
     const DeviceLock drawing(DeviceLock::Mode::draw, draw_patience_s);

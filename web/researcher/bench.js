@@ -35,6 +35,8 @@ function numbers(record) {
     ["Frame time, 95th percentile", cost?.frame_ms ? `${significant(cost.frame_ms.p95)} ms` : "–"],
     ["Spread of repeats (half the quartiles' distance)",
       cost?.frame_ms?.spread === undefined ? "–" : `${significant(100 * cost.frame_ms.spread)} %`],
+    ["Frame time over that without shadows", significant(cost?.frame_ms?.over_none)],
+    ["Times settled", cost?.frame_ms?.settled === false ? "no: do not compare them" : "–"],
     ["Memory over no shadows", bytes(cost?.memory?.over_none_bytes)],
   ].filter(([, value]) => value !== "–");
   return h("table", { class: "plain" }, h("caption", {}, "Numbers"),
