@@ -1,0 +1,143 @@
+// Many at once, and a server that runs out of something.
+#include <signal.h>
+
+#include "tests/faults/answering.h"
+#include "tests/faults/ledger.h"
+#include "tests/faults/traffic.h"
+
+namespace penumbra::faults {
+namespace {
+
+using Load = WithStudy;
+
+/// A render that takes many seconds on any machine.
+json slow_render(int width) {
+  return {{"scene", "boxes"}, {"technique", "reference"}, {"width", width},
+          {"height", 1000},   {"supersampling", 16},      {"light_samples", 1024}};
+}
+
+json quick_render(int width) {
+  return {{"scene", "half-plane"}, {"technique", "none"}, {"width", width}, {"height", 16}};
+}
+
+TEST_F(Load, AFloodOfRequestsFillsTheQueueAndNoMore) {
+  Fault fault(23, "400 distinct requests, a queue of 20");
+  ServerProcess server(options({"--queue-limit", "20"}));
+  ASSERT_GT(server.worker(), 0);
+  std::mutex mutex;
+  std::vector<std::string> taken;
+  std::atomic<int> refused = 0;
+  std::atomic<int> other = 0;
+  std::atomic<int> next = 0;
+  std::vector<std::thread> people;
+  for (int thread = 0; thread < 20; ++thread)
+    people.emplace_back([&] {
+      auto client = server.client();
+      for (int i = next++; i < 400; i = next++) {
+        auto body = quick_render(16 + i);
+        body["height"] = 200;
+        body["supersampling"] = 16;
+        const auto result = client.Post("/api/v1/renders", body.dump(), "application/json");
+        if (result && (result->status == 202 || result->status == 200)) {
+          const std::lock_guard lock(mutex);
+          taken.push_back(json::parse(result->body)["id"]);
+        } else if (result && result->status == 503 && result->has_header("Retry-After")) {
+          ++refused;
+        } else {
+          ++other;
+        }
+      }
+    });
+  for (auto& person : people) person.join();
+  fault.tries = 400;
+  EXPECT_EQ(other, 0);
+  EXPECT_GT(refused, 0);
+  for (const auto& id : taken) {
+    const auto done = server.client().Get("/api/v1/renders/" + id + "?wait_s=50");
+    ASSERT_TRUE(done);
+    if (json::parse(done->body)["status"] != "done") ++fault.lost;
+  }
+  EXPECT_EQ(fault.lost, 0);
+  fault.did << taken.size() << " taken and all drawn, " << refused << " times 503 with Retry-After";
+}
+
+TEST_F(Load, TwoHundredPeopleAnswerAtOnce) {
+  Fault fault(0, "200 people answer at once");
+  ServerProcess server(options());
+  Answering people(server, enter_many(server, 600), 200);
+  people.finish();
+  const auto times = people.seconds();
+  ASSERT_EQ(times.size(), 1200u);
+  fault.tries = static_cast<int>(times.size());
+  fault.lost = people.acknowledged().lost(server);
+  fault.doubled = Acknowledged::doubled(server);
+  EXPECT_EQ(people.retried(), 0);
+  EXPECT_EQ(fault.lost, 0);
+  const auto at = [&](double share) {
+    return static_cast<int>(1000 * times[static_cast<std::size_t>(share * (times.size() - 1.0))]);
+  };
+  // A quiet machine stays under 100 ms; this only catches what waits for seconds.
+  EXPECT_LT(at(0.99), 2000);
+  fault.did << "median " << at(0.5) << " ms, 99 of 100 under " << at(0.99)
+            << " ms, the client's threads on the same machine";
+}
+
+TEST_F(Load, ExhaustedDescriptorsAreSurvived) {
+  Fault fault(25, "descriptors exhausted by idle connections");
+  ServerProcess server(options());
+  ASSERT_GT(server.worker(), 0);
+  auto client = server.client();
+  const auto person = enter(client);
+  const auto limit = server.descriptors() + 24;
+  server.limit(RLIMIT_NOFILE, limit);
+  {
+    std::vector<std::unique_ptr<httplib::Client>> idle;
+    for (; fault.tries < 100; ++fault.tries) {
+      idle.push_back(std::make_unique<httplib::Client>("127.0.0.1", server.port()));
+      idle.back()->set_keep_alive(true);
+      idle.back()->set_read_timeout(0, 20000);
+      idle.back()->Get("/api/v1/scenes");
+    }
+    EXPECT_TRUE(server.running());
+    EXPECT_LE(server.descriptors(), limit);
+  }
+  EXPECT_TRUE(eventually([&] {
+    const auto put =
+        client.Put(person.page(0), person.answer(0, random_uuid()).dump(), "application/json");
+    return put && put->status == 200;
+  }));
+  EXPECT_EQ(server.operations().Get("/healthz")->status, 200);
+  fault.did << "answers were taken again once the connections were closed";
+}
+
+TEST_F(Load, ASignalUnderLoadDrains) {
+  Fault fault(26, "SIGTERM amid answers and a render");
+  for (; fault.tries < 3; ++fault.tries) {
+    ServerProcess server(options({"--drain-deadline", "3"}));
+    ASSERT_GT(server.worker(), 0);
+    server.client().Post("/api/v1/renders", slow_render(1000 + fault.tries).dump(),
+                         "application/json");
+    Answering people(server, enter_many(server, 300), 16);
+    eventually([&] { return people.acknowledged().size() >= 50; });
+    const Stopwatch watch;
+    EXPECT_EQ(server.terminate(30), 0) << server.log();
+    EXPECT_LT(watch.seconds(), 15.0);
+    people.stop();
+    server.start();
+    ASSERT_TRUE(server.running()) << server.log();
+    fault.lost += people.acknowledged().lost(server);
+    fault.did << people.acknowledged().size() << " acknowledged, exit 0 after "
+              << static_cast<int>(watch.seconds() * 1000) << " ms; ";
+  }
+  EXPECT_EQ(fault.lost, 0);
+}
+
+TEST(Traffic, LongMixedTrafficGrowsNothing) {
+  Fault fault(0, "five minutes of mixed traffic");
+  ++fault.tries;
+  EXPECT_EQ(run_traffic(5.0), 0);
+  fault.did << "memory, descriptors and the database's log did not grow";
+}
+
+}  // namespace
+}  // namespace penumbra::faults
