@@ -199,7 +199,9 @@ TEST(Doors, BytesThatAreNoTextAreReplacedInEveryName) {
     for (const auto& element : scene.cameras) names.push_back(element.name);
     names.push_back(scene.id);
     EXPECT_NO_THROW((void)names.dump());
-    if (round % 2 == 0) EXPECT_THAT(scene.notes, Contains(HasSubstr("names have bytes")));
+    if (round % 2 == 0) {
+      EXPECT_THAT(scene.notes, Contains(HasSubstr("names have bytes")));
+    }
   }
 }
 
