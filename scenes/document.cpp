@@ -233,14 +233,20 @@ Scene read_document(const json& document, const fs::path& folder,
     read_material(value, path, scene.materials.emplace_back());
   }
   const json& meshes = list_of(reader, "meshes");
+  std::vector<glm::dvec3> origins(meshes.size());
   for (std::size_t i = 0; i < meshes.size(); ++i)
     scene.meshes.push_back(read_mesh(
-        meshes[i], at_index("meshes", i), [&](const json& value, const std::string& path) {
+        meshes[i], at_index("meshes", i),
+        [&](const json& value, const std::string& path) {
           return static_cast<std::uint32_t>(find(value, path, scene.materials));
-        }));
+        },
+        origins[i]));
   const json& instances = list_of(reader, "instances");
-  for (std::size_t i = 0; i < instances.size(); ++i)
+  for (std::size_t i = 0; i < instances.size(); ++i) {
     scene.instances.push_back(read_instance(instances[i], at_index("instances", i), scene));
+    Instance& instance = scene.instances.back();
+    instance.world_from_object = instance.world_from_object * move(origins[instance.mesh]);
+  }
   const json& models = list_of(reader, "models");
   for (std::size_t i = 0; i < models.size(); ++i)
     add_model(models[i], at_index("models", i), folder, scene);

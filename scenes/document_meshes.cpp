@@ -4,6 +4,7 @@
 #include <map>
 
 #include "scenes/generators/shapes.h"
+#include "scenes/import/local_origin.h"
 #include "scenes/json_reader.h"
 
 namespace penumbra::scenes {
@@ -151,6 +152,24 @@ void read_array(JsonReader& reader, const char* key, double bound,
     out[i / N][static_cast<int>(i % N)] = static_cast<float>(numbers[i]);
 }
 
+/// Positions, counted from a place near them where they are to fit into floats. Those that are
+/// floats stay as they are, so that a written scene reads back the same.
+void read_positions(JsonReader& reader, std::vector<glm::vec3>& positions, glm::dvec3& origin) {
+  read_array<3>(reader, "positions", max_coordinate, positions);
+  const json& numbers = reader.at("positions");
+  std::vector<glm::dvec3> points(positions.size());
+  bool exact = true;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const int axis = static_cast<int>(i % 3);
+    points[i / 3][axis] = numbers[i].get<double>();
+    exact = exact && points[i / 3][axis] == static_cast<double>(positions[i / 3][axis]);
+  }
+  if (exact) return;
+  origin = local_origin(points);
+  if (origin == glm::dvec3(0.0)) return;
+  for (std::size_t i = 0; i < points.size(); ++i) positions[i] = glm::vec3(points[i] - origin);
+}
+
 template <int N>
 json array_of(const std::vector<glm::vec<N, float>>& list) {
   json numbers = json::array();
@@ -175,9 +194,11 @@ std::vector<std::string> mesh_generators() {
 }
 
 Mesh read_mesh(const json& value, const std::string& path,
-               const std::function<std::uint32_t(const json&, const std::string&)>& material_of) {
+               const std::function<std::uint32_t(const json&, const std::string&)>& material_of,
+               glm::dvec3& origin) {
   JsonReader reader(value, path);
   Mesh mesh;
+  origin = glm::dvec3(0.0);
   if (reader.has("generator")) {
     Maker maker = nullptr;
     std::vector<std::pair<const char*, Maker>> choices;
@@ -196,7 +217,7 @@ Mesh read_mesh(const json& value, const std::string& path,
     mesh.primitives[0].material = material;
   } else {
     reader.at("positions");
-    read_array<3>(reader, "positions", max_coordinate, mesh.positions);
+    read_positions(reader, mesh.positions, origin);
     read_array<3>(reader, "normals", 2.0, mesh.normals);
     read_array<2>(reader, "uvs", max_coordinate, mesh.uvs);
     read_array<4>(reader, "colors", 1e6, mesh.colors);

@@ -121,20 +121,7 @@ fs::path imported_file(const std::string& id, const fs::path& data) {
         fs::is_regular_file(file, ignored))
       return file;
   const fs::path folder = data / "scenes" / id;
-  std::vector<fs::path> found;
-  if (!fs::is_directory(folder, ignored)) return {};
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file(ignored) && is_scene_file(entry.path()))
-      found.push_back(entry.path());
-  std::sort(found.begin(), found.end());
-  // A binary file before the others; what lies deeper may be what the main file names.
-  std::stable_sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
-    const auto rank = [](const fs::path& file) {
-      return 10 * std::distance(file.begin(), file.end()) +
-             (lower_extension(file) == ".json" ? 1 : 0);
-    };
-    return rank(a) < rank(b);
-  });
+  const std::vector<fs::path> found = scene_files(folder);
   return found.empty() ? fs::path() : found.front();
 }
 
@@ -153,6 +140,26 @@ std::string known_names(const fs::path& data) {
 }
 
 }  // namespace
+
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> found;
+  if (!fs::is_directory(folder, ignored)) return found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file(ignored) && is_scene_file(entry.path()))
+      found.push_back(entry.path());
+  const auto rank = [](const fs::path& file) {
+    return 10 * std::distance(file.begin(), file.end()) +
+           (lower_extension(file) == ".json" ? 1 : 0);
+  };
+  std::sort(found.begin(), found.end(), [&](const fs::path& a, const fs::path& b) {
+    return std::pair(rank(a), a) < std::pair(rank(b), b);
+  });
+  std::erase_if(found, [&, best = found.empty() ? 0 : rank(found.front())](const fs::path& file) {
+    return rank(file) != best;
+  });
+  return found;
+}
 
 std::vector<SceneInfo> built_in() {
   std::vector<SceneInfo> list;

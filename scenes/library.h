@@ -25,6 +25,10 @@ std::vector<SceneInfo> built_in();
 /// element.
 std::shared_ptr<const Scene> load(const std::string& name, const std::filesystem::path& data = {});
 
+/// The files in a folder and below that its scene may be read from: those least deep, scene
+/// documents only where there is no model; sorted. The first is the scene's.
+std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder);
+
 /// Hash of everything in the scene that can change a picture, 32 hexadecimal digits: equal scenes
 /// have equal hashes however they were loaded.
 std::string content_hash(const Scene& scene);

@@ -98,9 +98,10 @@ OpenedInput open_memory(const std::string& extension, std::string_view bytes) {
 }
 
 /// Picture with exactly four channels: grey spreads over three, missing alpha is 255.
-Image8 as_rgba(const Image8& from) {
+template <class T>
+Image<T> as_rgba(const Image<T>& from) {
   if (from.channels == 4) return from;
-  Image8 to(from.width, from.height, 4, 255);
+  Image<T> to(from.width, from.height, 4, T{255});
   const bool grey = from.channels < 3;
   for (std::uint32_t y = 0; y < from.height; ++y)
     for (std::uint32_t x = 0; x < from.width; ++x) {
@@ -164,10 +165,13 @@ void write_picture(const std::filesystem::path& file, const ImageF& picture,
   write_file(file, encode_exr(picture, channels));
 }
 
-Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
+namespace {
+
+/// A picture that may be decoded; see decode_picture.
+OpenedInput open_picture(std::string_view bytes, std::uint64_t most_bytes) {
   const std::string extension = format_of(bytes);
   if (extension.empty()) throw unreadable("the picture is neither PNG nor JPEG nor TIFF");
-  const OpenedInput opened = open_memory(extension, bytes);
+  OpenedInput opened = open_memory(extension, bytes);
   const ImageSpec& spec = opened.input->spec();
   if (spec.nchannels > 4)
     throw unreadable("the picture has " + std::to_string(spec.nchannels) +
@@ -178,11 +182,37 @@ Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
     throw unreadable("the picture of " + std::to_string(spec.width) + " by " +
                      std::to_string(spec.height) + " pixels takes more than the " +
                      std::to_string(most_bytes >> 20) + " MiB that are left for pictures");
-  Image8 picture(static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
-                 static_cast<std::uint32_t>(spec.nchannels));
-  if (!opened.input->read_image(0, 0, 0, -1, TypeDesc::UINT8, picture.pixels.data()))
+  return opened;
+}
+
+template <class T>
+Image<T> read_pixels(const OpenedInput& opened, TypeDesc type) {
+  const ImageSpec& spec = opened.input->spec();
+  Image<T> picture(static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
+                   static_cast<std::uint32_t>(spec.nchannels));
+  if (!opened.input->read_image(0, 0, 0, -1, type, picture.pixels.data()))
     throw unreadable("the picture is damaged: " + opened.input->geterror());
-  return as_rgba(picture);
+  return picture;
+}
+
+}  // namespace
+
+Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
+  return as_rgba(read_pixels<std::uint8_t>(open_picture(bytes, most_bytes), TypeDesc::UINT8));
+}
+
+ImageF decode_levels(std::string_view bytes, bool& fractions) {
+  const OpenedInput opened = open_picture(bytes, std::uint64_t{1} << 29);
+  fractions = opened.input->spec().format != TypeDesc::UINT8;
+  if (!fractions) {
+    const Image8 whole = as_rgba(read_pixels<std::uint8_t>(opened, TypeDesc::UINT8));
+    ImageF levels(whole.width, whole.height, 4);
+    std::copy(whole.pixels.begin(), whole.pixels.end(), levels.pixels.begin());
+    return levels;
+  }
+  ImageF levels = read_pixels<float>(opened, TypeDesc::FLOAT);
+  for (float& value : levels.pixels) value *= 255.0f;
+  return as_rgba(levels);
 }
 
 Image8 read_picture(const std::filesystem::path& file) {

@@ -35,6 +35,9 @@ Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes = std::ui
 /// As decode_picture; throws not_found where there is no such file, unreadable naming the file.
 Image8 read_picture(const std::filesystem::path& file);
 
+/// As decode_picture in levels 0..255, RGBA; those of files with more than 8 bits have fractions.
+ImageF decode_levels(std::string_view bytes, bool& fractions);
+
 /// EXR written by encode_exr; `channels`, where given, receives the names.
 ImageF decode_exr(std::string_view bytes, std::vector<std::string>* channels = nullptr);
 

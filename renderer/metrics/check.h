@@ -12,8 +12,9 @@ inline std::string shape_text(std::uint32_t width, std::uint32_t height) {
 }
 
 /// What every comparison of encoded pictures demands. Throws bad_value with field "picture".
-inline void check_pair(const Image8& picture, const Image8& reference) {
-  for (const Image8* image : {&picture, &reference}) {
+template <class T>
+void check_pair(const Image<T>& picture, const Image<T>& reference) {
+  for (const Image<T>* image : {&picture, &reference}) {
     if (image->channels != 3 && image->channels != 4)
       throw bad_value("picture", "pictures to compare must have 3 or 4 channels, not " +
                                      std::to_string(image->channels));
@@ -29,6 +30,15 @@ inline void check_pair(const Image8& picture, const Image8& reference) {
 /// Y = 0.299 R + 0.587 G + 0.114 B of an encoded pixel, in thousandths: exact in integers.
 inline int luma_thousandths(const std::uint8_t* rgb) {
   return 299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2];
+}
+
+/// Y in levels, 0..255.
+inline double luma(const std::uint8_t* rgb) {
+  return luma_thousandths(rgb) / 1000.0;
+}
+inline double luma(const float* rgb) {
+  return 0.299 * static_cast<double>(rgb[0]) + 0.587 * static_cast<double>(rgb[1]) +
+         0.114 * static_cast<double>(rgb[2]);
 }
 
 }  // namespace penumbra::metrics

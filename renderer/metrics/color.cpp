@@ -34,13 +34,16 @@ glm::dvec3 lightness_and_opponents(const glm::dvec3& xyz) {
 
 }  // namespace
 
+double linear_from_srgb(float level) {
+  const double v = static_cast<double>(level) / 255.0;
+  return v > 0.04045 ? std::pow((v + 0.055) / 1.055, 2.4) : v / 12.92;
+}
+
 double linear_from_srgb(std::uint8_t encoded) {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double v = static_cast<double>(i) / 255.0;
-      values[i] = v > 0.04045 ? std::pow((v + 0.055) / 1.055, 2.4) : v / 12.92;
-    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = linear_from_srgb(static_cast<float>(i));
     return values;
   }();
   return table[encoded];

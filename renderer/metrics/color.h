@@ -8,6 +8,8 @@ namespace penumbra::metrics {
 
 /// Linear light 0..1 of an sRGB-encoded component (IEC 61966-2-1).
 double linear_from_srgb(std::uint8_t encoded);
+/// The same of a level with fractions, 0..255.
+double linear_from_srgb(float level);
 
 /// Opponent space that is linear in light: Y in -16..100, red-green Cx, blue-yellow Cz.
 glm::dvec3 opponent_from_linear(const glm::dvec3& rgb);

@@ -22,6 +22,17 @@ double mean_over_pixels(const Image8& picture, const Image8& reference, OfPixel 
   return sum / static_cast<double>(picture.pixel_count());
 }
 
+/// Mean of `of_pixel` of two pictures with fractions.
+template <class OfPixel>
+double mean_square(const ImageF& picture, const ImageF& reference, OfPixel of_pixel) {
+  check_pair(picture, reference);
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      sum += of_pixel(&picture.at(x, y, 0), &reference.at(x, y, 0));
+  return sum / static_cast<double>(picture.pixel_count());
+}
+
 /// A value that is no number is judged as the visibility farthest from the reference: a broken
 /// technique must not come off better than a wrong one, and no sum may become NaN.
 double judged_value(float visibility, float reference) {
@@ -50,6 +61,24 @@ double psnr(const Image8& picture, const Image8& reference) {
     return sum;
   };
   const double mean_squared = mean_over_pixels(picture, reference, squared) / 3.0;
+  if (mean_squared == 0.0) return std::numeric_limits<double>::infinity();
+  return 10.0 * std::log10(255.0 * 255.0 / mean_squared);
+}
+
+double rms_y(const ImageF& picture, const ImageF& reference) {
+  return std::sqrt(mean_square(picture, reference, [](const float* a, const float* b) {
+    return (luma(a) - luma(b)) * (luma(a) - luma(b));
+  }));
+}
+
+double psnr(const ImageF& picture, const ImageF& reference) {
+  const double mean_squared = mean_square(picture, reference, [](const float* a, const float* b) {
+    double sum = 0.0;
+    for (int c = 0; c < 3; ++c)
+      sum += (static_cast<double>(a[c]) - static_cast<double>(b[c])) *
+             (static_cast<double>(a[c]) - static_cast<double>(b[c]));
+    return sum / 3.0;
+  });
   if (mean_squared == 0.0) return std::numeric_limits<double>::infinity();
   return 10.0 * std::log10(255.0 * 255.0 / mean_squared);
 }

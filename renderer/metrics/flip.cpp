@@ -106,9 +106,10 @@ struct RowFeatures {
 };
 
 /// Filters one picture row by row, downwards; borders repeat.
+template <class T>
 class FilteredPicture {
  public:
-  FilteredPicture(const Image8& picture_, const Kernels& kernels_)
+  FilteredPicture(const Image<T>& picture_, const Kernels& kernels_)
       : picture(picture_),
         kernels(kernels_),
         radius(kernels_.radius()),
@@ -135,7 +136,7 @@ class FilteredPicture {
   void filter_horizontally(std::uint32_t y);
   void filter_vertically(std::uint32_t y, Plane plane, const Kernel& kernel, Output output);
 
-  const Image8& picture;
+  const Image<T>& picture;
   const Kernels& kernels;
   std::size_t radius;
   RowRing padded;  ///< opponent colour of one row, its ends repeated
@@ -144,10 +145,11 @@ class FilteredPicture {
   std::uint32_t rows_read = 0;
 };
 
-void FilteredPicture::filter_horizontally(std::uint32_t y) {
+template <class T>
+void FilteredPicture<T>::filter_horizontally(std::uint32_t y) {
   const std::size_t last = picture.width - 1;
   for (std::size_t x = 0; x < picture.width; ++x) {
-    const std::uint8_t* pixel = &picture.at(static_cast<std::uint32_t>(x), y, 0);
+    const T* pixel = &picture.at(static_cast<std::uint32_t>(x), y, 0);
     const glm::dvec3 opponent = opponent_from_linear(
         {linear_from_srgb(pixel[0]), linear_from_srgb(pixel[1]), linear_from_srgb(pixel[2])});
     for (std::size_t c = 0; c < 3; ++c)
@@ -171,8 +173,9 @@ void FilteredPicture::filter_horizontally(std::uint32_t y) {
   filter(0, kernels.point, point);
 }
 
-void FilteredPicture::filter_vertically(std::uint32_t y, Plane plane, const Kernel& kernel,
-                                        Output output) {
+template <class T>
+void FilteredPicture<T>::filter_vertically(std::uint32_t y, Plane plane, const Kernel& kernel,
+                                           Output output) {
   const auto last = static_cast<std::ptrdiff_t>(picture.height) - 1;
   const auto first =
       static_cast<std::ptrdiff_t>(y) - static_cast<std::ptrdiff_t>(radius_of(kernel));
@@ -183,7 +186,8 @@ void FilteredPicture::filter_vertically(std::uint32_t y, Plane plane, const Kern
   }
 }
 
-void FilteredPicture::read(std::uint32_t y, RowFeatures& out) {
+template <class T>
+void FilteredPicture<T>::read(std::uint32_t y, RowFeatures& out) {
   for (; rows_read < picture.height && rows_read <= y + radius; ++rows_read)
     filter_horizontally(rows_read);
 
@@ -235,9 +239,8 @@ double feature_error(double edges_a, double edges_b, double points_a, double poi
   return std::min(std::sqrt(larger / std::numbers::sqrt2), 1.0);
 }
 
-}  // namespace
-
-double flip(const Image8& picture, const Image8& reference, double pixels_per_degree) {
+template <class T>
+double flip_of(const Image<T>& picture, const Image<T>& reference, double pixels_per_degree) {
   check_pair(picture, reference);
   if (!(pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0))
     throw bad_value("pixels_per_degree", "pixels_per_degree must be from 1 to 1000");
@@ -257,6 +260,16 @@ double flip(const Image8& picture, const Image8& reference, double pixels_per_de
     }
   }
   return sum / static_cast<double>(picture.pixel_count());
+}
+
+}  // namespace
+
+double flip(const Image8& picture, const Image8& reference, double pixels_per_degree) {
+  return flip_of(picture, reference, pixels_per_degree);
+}
+
+double flip(const ImageF& picture, const ImageF& reference, double pixels_per_degree) {
+  return flip_of(picture, reference, pixels_per_degree);
 }
 
 }  // namespace penumbra::metrics

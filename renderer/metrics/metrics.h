@@ -21,6 +21,12 @@ double ssim(const Image8& picture, const Image8& reference);
 /// screen seen from 0.7 m). Borders repeat. Source: Andersson et al. 2020.
 double flip(const Image8& picture, const Image8& reference, double pixels_per_degree = 67.0);
 
+/// The same for pictures of more than 8 bits: encoded levels 0..255 with fractions.
+double rms_y(const ImageF& picture, const ImageF& reference);
+double psnr(const ImageF& picture, const ImageF& reference);
+double ssim(const ImageF& picture, const ImageF& reference);
+double flip(const ImageF& picture, const ImageF& reference, double pixels_per_degree = 67.0);
+
 /// Of visibility pictures (one channel per light), over pixels with judged > 0.5 of their channel.
 /// A visibility that is no finite number counts as the one farthest from the reference. All zero
 /// where nothing is judged.

@@ -30,10 +30,11 @@ std::array<double, window> gaussian() {
 enum Plane : std::size_t { mean_a, mean_b, square_a, square_b, product, planes };
 
 /// Moments before filtering, of one row.
-void read_row(const Image8& picture, const Image8& reference, std::uint32_t y, RowRing& raw) {
+template <class T>
+void read_row(const Image<T>& picture, const Image<T>& reference, std::uint32_t y, RowRing& raw) {
   for (std::uint32_t x = 0; x < picture.width; ++x) {
-    const double a = luma_thousandths(&picture.at(x, y, 0)) / 1000.0;
-    const double b = luma_thousandths(&reference.at(x, y, 0)) / 1000.0;
+    const double a = luma(&picture.at(x, y, 0));
+    const double b = luma(&reference.at(x, y, 0));
     raw.row(mean_a, 0)[x] = a;
     raw.row(mean_b, 0)[x] = b;
     raw.row(square_a, 0)[x] = a * a;
@@ -50,9 +51,8 @@ double index_of(double a, double b, double aa, double bb, double ab) {
          ((a * a + b * b + c1) * (variance_a + variance_b + c2));
 }
 
-}  // namespace
-
-double ssim(const Image8& picture, const Image8& reference) {
+template <class T>
+double ssim_of(const Image<T>& picture, const Image<T>& reference) {
   check_pair(picture, reference);
   if (picture.width < window || picture.height < window)
     throw bad_value("picture", "SSIM needs pictures of at least 11x11 pixels, not " +
@@ -83,6 +83,16 @@ double ssim(const Image8& picture, const Image8& reference) {
                       moments.row(product, 0)[x]);
   }
   return sum / static_cast<double>(width * (picture.height - window + 1));
+}
+
+}  // namespace
+
+double ssim(const Image8& picture, const Image8& reference) {
+  return ssim_of(picture, reference);
+}
+
+double ssim(const ImageF& picture, const ImageF& reference) {
+  return ssim_of(picture, reference);
 }
 
 }  // namespace penumbra::metrics

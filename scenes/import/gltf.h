@@ -60,6 +60,9 @@ void read_nodes(const tinygltf::Model& model, Scene& scene, Notes& notes);
 std::vector<glm::dmat4> read_copies(const tinygltf::Model& model, const tinygltf::Node& node,
                                     const std::string& where);
 
+/// Instances of a scene: far more than are seen, and each takes memory where a file takes none.
+constexpr std::size_t max_instances = 1'000'000;
+
 /// Corners of all triangles that are drawn together; 5 million triangles have 15 million.
 constexpr std::size_t max_corners = 100'000'000;
 

@@ -41,6 +41,9 @@ std::vector<glm::dmat4> read_copies(const tinygltf::Model& model, const tinygltf
       (!turns.empty() && turns.size() / 4 != count) ||
       (!scales.empty() && scales.size() / 3 != count))
     throw unreadable(where + ": its attributes differ in length", where);
+  if (count > max_instances)
+    throw unreadable(where + " asks for more than " + std::to_string(max_instances) + " copies",
+                     where);
   std::vector<glm::dmat4> copies(count, glm::dmat4(1.0));
   for (std::size_t i = 0; i < count; ++i) {
     glm::dmat4& matrix = copies[i];

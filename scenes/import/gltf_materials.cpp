@@ -63,7 +63,13 @@ class Textures {
     const auto index = static_cast<std::size_t>(source);
     const tinygltf::Image& image = model.images[index];
     const std::string name = element("images", index, image.name);
-    const std::string_view bytes = encoded_image(model, image, name);
+    std::string_view bytes;
+    try {
+      bytes = encoded_image(model, image, name);
+    } catch (const Error& error) {
+      notes.add("", std::string(error.what()) + ": it is left out");
+      return -1;
+    }
     // That its file is not there has been told where it was looked for.
     if (!bytes.empty() || image.uri.empty()) entry->second = store.add(image.name, bytes, name);
     return entry->second;

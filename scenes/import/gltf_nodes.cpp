@@ -127,7 +127,8 @@ void add_instances(const tinygltf::Model& model, const tinygltf::Node& node,
       continue;
     }
     corners += scene.meshes[index].indices.size();
-    if (corners > max_corners) throw unreadable("the file has too many triangles", where);
+    if (corners > max_corners || scene.instances.size() >= max_instances)
+      throw unreadable("the file has too many triangles or instances", where);
     scene.instances.push_back({node.name, static_cast<std::uint32_t>(index), place, true});
   }
 }

@@ -26,6 +26,9 @@ struct CornerHash {
   }
 };
 
+/// Corners of a face: one that crosses itself everywhere takes their square in time and memory.
+constexpr std::size_t max_polygon = 10'000;
+
 /// Mean of a list's values at up to four corners.
 template <class T>
 T mix(const std::vector<T>& values, const std::vector<Corner>& corners, const CornerShares& shares,
@@ -59,6 +62,10 @@ class MeshBuilder {
   }
 
   void add_face(const obj::Face& face, const std::string& where) {
+    if (face.count > max_polygon) {
+      notes.add(where, " has a face of more than 10000 corners: it is left out");
+      return;
+    }
     const auto begin = file.corners.begin() + static_cast<std::ptrdiff_t>(face.first);
     std::vector<Corner> corners(begin, begin + static_cast<std::ptrdiff_t>(face.count));
     std::vector<glm::dvec3> polygon;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <set>
@@ -20,6 +21,8 @@ std::string line_text(std::size_t line) {
 const std::set<std::string_view> silent = {"s",          "mg",        "bevel",  "c_interp",
                                            "d_interp",   "lod",       "maplib", "usemap",
                                            "shadow_obj", "trace_obj", "call"};
+
+const glm::vec3 no_color(-1.0f);
 
 class Reader {
  public:
@@ -51,6 +54,16 @@ class Reader {
     }
   }
 
+  /// Some tools write colours as 0..255.
+  void scale_colors() {
+    float most = 0.0f;
+    for (const glm::vec3& color : file.colors) most = std::max({most, color.x, color.y, color.z});
+    if (most <= 1.0f) return;
+    for (glm::vec3& color : file.colors)
+      if (color != no_color) color /= 255.0f;
+    notes.add("", "colours of vertices were read as 0..255");
+  }
+
   File file;
 
  private:
@@ -74,7 +87,7 @@ class Reader {
     file.positions.emplace_back(values[0], values[1], values[2]);
     // x y z r g b, or with a weight before the colour; a weight alone belongs to curves.
     if (values.size() < 6 && file.colors.empty()) return;
-    file.colors.resize(file.positions.size(), glm::vec3(1.0f));
+    file.colors.resize(file.positions.size(), no_color);
     if (values.size() < 6) return;
     const std::size_t first = values.size() == 6 ? 3 : 4;
     for (int c = 0; c < 3; ++c)
@@ -151,9 +164,12 @@ File read_file(std::string_view text, Notes& notes) {
   for_each_statement(text, [&](const std::vector<std::string_view>& words, std::size_t line) {
     reader.take(words, line);
   });
-  // Positions after the last that has a colour are white like those before the first.
+  reader.scale_colors();
+  // Where only some positions have a colour, the others are white.
   if (!reader.file.colors.empty())
-    reader.file.colors.resize(reader.file.positions.size(), glm::vec3(1.0f));
+    reader.file.colors.resize(reader.file.positions.size(), no_color);
+  for (glm::vec3& color : reader.file.colors)
+    if (color == no_color) color = glm::vec3(1.0f);
   return std::move(reader.file);
 }
 

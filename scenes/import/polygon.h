@@ -22,8 +22,8 @@ struct Triangulation {
 /// Triangles of a polygon: concave, with holes that are joined to its border by doubled edges, with
 /// corners on a line or twice at a place, bent out of its plane. What it winds around is inside
 /// (the nonzero rule), so that one that crosses itself keeps all its parts. Every corner stays
-/// where it is; `crossing` hears of each corner added where edges cross. Three corners are a triangle
-/// wherever they lie; more of which less than three differ give nothing.
+/// where it is; `crossing` hears of each corner added where edges cross. Three corners are a
+/// triangle wherever they lie; more of which less than three differ give nothing.
 Triangulation triangulate(std::span<const glm::dvec3> polygon,
                           const std::function<void(const CornerShares&)>& crossing);
 

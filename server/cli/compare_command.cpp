@@ -2,7 +2,7 @@
 
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
-#include "scenes/picture_io.h"
+#include "scenes/measured_picture.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
 
@@ -13,8 +13,10 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 int compare(const Session& session, const fs::path& a, const fs::path& b) {
-  const Image8 picture = scenes::read_picture(a);
-  const Image8 reference = scenes::read_picture(b);
+  const scenes::MeasuredPicture first = scenes::read_measured_picture(a);
+  const scenes::MeasuredPicture second = scenes::read_measured_picture(b);
+  const ImageF& picture = first.levels;
+  const ImageF& reference = second.levels;
   if (picture.width != reference.width || picture.height != reference.height)
     throw bad_value("B", a.string() + " has " + std::to_string(picture.width) + " x " +
                              std::to_string(picture.height) + " pixels, " + b.string() + " has " +
@@ -26,6 +28,9 @@ int compare(const Session& session, const fs::path& a, const fs::path& b) {
                 {"ssim", nullptr},
                 {"flip", metrics::flip(picture, reference)},
                 {"notes", json::array()}};
+  for (const auto& [read, file] : {std::pair(&first, &a), std::pair(&second, &b)})
+    for (const std::string& note : read->notes)
+      document["notes"].push_back(file->string() + " " + note);
   try {
     document["ssim"] = metrics::ssim(picture, reference);
   } catch (const Error& error) {

@@ -137,6 +137,22 @@ TEST(Document, ImportedScenesAreFoundByTheirId) {
   EXPECT_THAT(error_of([&] { load("../scenes/mine", data.path); }), HasSubstr("not_found"));
 }
 
+TEST(Document, KeepsGeoreferencedCoordinatesToTheMillimetre) {
+  json document = example();
+  const std::vector<double> positions = {512345.251, 120.802, -5412345.753,
+                                         512346.254, 120.805, -5412345.756,
+                                         512345.257, 121.808, -5412344.759};
+  document["meshes"][1]["positions"] = positions;
+  document["instances"][1] = {{"mesh", 1}, {"position", {0, 0, 2}}, {"rotation", {0, 180, 0}}};
+  const Scene scene = read_document(document, {});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 place(scene.instances[1].world_from_object *
+                           glm::dvec4(glm::dvec3(scene.meshes[1].positions[i]), 1.0));
+    const glm::dvec3 right(-positions[3 * i], positions[3 * i + 1], 2.0 - positions[3 * i + 2]);
+    EXPECT_LT(glm::distance(place, right), 1e-5) << i;
+  }
+}
+
 TEST(Document, TakesModelsFromItsFolderAndFromNowhereElse) {
   const TemporaryFolder folder;
   folder.write("models/box.glb", encode_glb(*load("contact")));

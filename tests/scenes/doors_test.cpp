@@ -265,6 +265,15 @@ TEST(Doors, CopiesOfAMeshStandWhereTheyAreSaidToStand) {
   EXPECT_THAT(error_of([&] { load_twice(file); }), HasSubstr("EXT_mesh_gpu_instancing.SCALE"));
 }
 
+TEST(Doors, CopiesThatTakeNoBytesOfTheFileAreBounded) {
+  GltfFile file;
+  file.document["accessors"].push_back(
+      {{"componentType", 5126}, {"count", 1 << 24}, {"type", "VEC3"}});
+  file.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", 2}};
+  EXPECT_THAT(error_of([&] { load_twice(file); }), HasSubstr("more than 1000000 copies"));
+}
+
 TEST(Doors, WhatIsLeftOutOrApproximatedIsTold) {
   GltfFile file =
       textured({{"uri", "data:image/png;base64," + base64_encode(png(90))}}, {0, 0, 3, 0, 0, 3});

@@ -325,6 +325,23 @@ TEST(Obj, LeavesUnusableSideFilesOutWithANote) {
   EXPECT_EQ(comma.materials[0].base_color, glm::vec3(0.8f, 0.25f, 0.0f));
 }
 
+TEST(Obj, ReadsColoursOfVerticesFromZeroToOneAndTo255) {
+  for (const char* one : {"1", "255"}) {
+    const std::string top = one;
+    const Scene scene = obj("v 0 0 0\nv 1 0 0 " + top + " 0 0\nv 0 1 0 0 " + top + " 0\nf 1 2 3\n");
+    EXPECT_EQ(scene.meshes[0].colors,
+              (std::vector<glm::vec4>{{1, 1, 1, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}}));
+  }
+}
+
+TEST(Obj, LeavesFacesOfTooManyCornersOut) {
+  std::string face = "f";
+  for (int i = 0; i < 200'000; ++i) face += " 1 2 3";
+  const Scene scene = obj(box_corners + face + "\n" + box_faces);
+  EXPECT_EQ(corners_of(scene).size(), 36u);
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("more than 10000 corners")));
+}
+
 TEST(Obj, TellsWhatItCannotDraw) {
   const TemporaryFolder folder;
   folder.write("m.mtl", "newmtl m\nd 0.3\nmap_Bump b.png\nmap_d a.png\n");
