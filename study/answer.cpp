@@ -72,23 +72,25 @@ std::vector<int> read_slots(const json& body, const std::string& field, std::siz
   return places;
 }
 
-void check_size(const json& value, const std::string& field) {
+PageSize read_size(const json& value, const std::string& field) {
   if (!value.is_object() || value.size() != 2 || !value.contains("width") ||
       !value.contains("height")) {
     throw bad_value(field, "an object with width and height is expected");
   }
-  read_real(value.at("width"), field + ".width", 1e6);
-  read_real(value.at("height"), field + ".height", 1e6);
+  return {read_real(value.at("width"), field + ".width", 1e6),
+          read_real(value.at("height"), field + ".height", 1e6)};
 }
 
-void check_order_shown(const json& value, std::size_t slots) {
+std::vector<int> read_order_shown(const json& value, std::size_t slots) {
   if (!value.is_array() || value.size() > slots) {
     throw bad_value("order_shown", "a list of slots is expected");
   }
+  std::vector<int> order;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    read_integer(value[i], "order_shown[" + std::to_string(i) + "]", 0,
-                 static_cast<int>(slots) - 1);
+    order.push_back(read_integer(value[i], "order_shown[" + std::to_string(i) + "]", 0,
+                                 static_cast<int>(slots) - 1));
   }
+  return order;
 }
 
 /// Reads one optional key; false for a key that nobody knows.
@@ -109,11 +111,13 @@ bool read_observation(const std::string& key, const json& value, std::size_t slo
   else if (key == "load_failures")
     seen.load_failures = read_integer(value, key, 0, max_count);
   else if (key == "order_shown")
-    check_order_shown(value, slots);
-  else if (key == "window" || key == "screen")
-    check_size(value, key);
+    seen.order_shown = read_order_shown(value, slots);
+  else if (key == "window")
+    seen.window = read_size(value, key);
+  else if (key == "screen")
+    seen.screen = read_size(value, key);
   else if (key == "device_pixel_ratio")
-    read_real(value, key, 64.0);
+    seen.device_pixel_ratio = read_real(value, key, 64.0);
   else if (key == "all_same") {
     if (!value.is_boolean()) throw bad_value(key, "true or false expected");
     seen.all_same = value.get<bool>();
@@ -121,6 +125,7 @@ bool read_observation(const std::string& key, const json& value, std::size_t slo
     if (!value.is_string() || value.get_ref<const std::string&>().size() > max_time_text) {
       throw bad_value(key, "a time as ISO 8601 has it is expected");
     }
+    (key == "started_at" ? seen.started_at : seen.answered_at) = value.get<std::string>();
   } else {
     return false;
   }

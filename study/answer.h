@@ -9,6 +9,11 @@
 
 namespace penumbra::study {
 
+struct PageSize {
+  double width = 0.0;
+  double height = 0.0;
+};
+
 /// What the page noted beside the ranks; nothing else about the person.
 struct Observations {
   std::optional<double> active_ms;  ///< page in front and focused
@@ -18,7 +23,13 @@ struct Observations {
   int swaps = 0;         ///< uses of the button "other way round"; ranks are those after it
   int blurs = 0;         ///< how often the window lost focus
   int load_failures = 0;
-  bool all_same = false;  ///< "all look the same" was chosen
+  bool all_same = false;           ///< "all look the same" was chosen
+  std::vector<int> order_shown;    ///< slots, empty: in their own order
+  std::optional<PageSize> window;  ///< CSS pixels
+  std::optional<PageSize> screen;  ///< CSS pixels
+  std::optional<double> device_pixel_ratio;
+  std::string started_at;   ///< by the browser's clock, as it was sent
+  std::string answered_at;  ///< by the browser's clock, as it was sent
 };
 
 struct Answer {

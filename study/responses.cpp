@@ -57,6 +57,11 @@ int read_whole(const std::string& cell, int low, int high) {
   return static_cast<int>(value);
 }
 
+/// As R reads truth values by itself.
+std::string flag_text(bool value) {
+  return value ? "TRUE" : "FALSE";
+}
+
 bool read_flag(const std::string& cell) {
   for (const char* name : {"true", "TRUE", "True", "1"}) {
     if (cell == name) return true;
@@ -65,6 +70,12 @@ bool read_flag(const std::string& cell) {
     if (cell == name) return false;
   }
   throw bad_value("", "true or false expected, found `" + cell + "`");
+}
+
+std::string joined(const std::vector<int>& numbers) {
+  std::string text;
+  for (const int number : numbers) text += (text.empty() ? "" : " ") + std::to_string(number);
+  return text;
 }
 
 /// A column and how it stands in a row.
@@ -130,12 +141,30 @@ Field rank_field() {
       [](ResponseRow& row, const std::string& cell) { row.rank = read_number(cell, 1.0, 1e6); }};
 }
 
+/// What is written and never read back: nothing that is computed from rows needs it.
+Field page_field(const char* name, const char* type, const char* meaning,
+                 std::function<std::string(const PageFacts&)> write) {
+  return {{name, type, meaning},
+          false,
+          [write = std::move(write)](const ResponseRow& row) {
+            return row.page ? write(*row.page) : std::string();
+          },
+          [](ResponseRow&, const std::string&) {}};
+}
+
+Field size_field(const char* name, const char* meaning, std::optional<PageSize> Observations::*size,
+                 double PageSize::*side) {
+  return page_field(name, "number", meaning, [size, side](const PageFacts& page) {
+    return page.seen.*size ? number_text((*(page.seen.*size)).*side) : std::string();
+  });
+}
+
 Field swapped_field() {
   return {{"swapped_direction", "boolean",
            "the button that turns the order round was used; ranks are those after it"},
           false,
           [](const ResponseRow& row) {
-            return row.swapped_direction ? std::string(*row.swapped_direction ? "true" : "false")
+            return row.swapped_direction ? std::string(flag_text(*row.swapped_direction))
                                          : std::string();
           },
           [](ResponseRow& row, const std::string& cell) {
@@ -146,7 +175,7 @@ Field swapped_field() {
 Field included_field() {
   return {{"included", "boolean", "false where a researcher took the participant out"},
           false,
-          [](const ResponseRow& row) { return std::string(row.included ? "true" : "false"); },
+          [](const ResponseRow& row) { return flag_text(row.included); },
           [](ResponseRow& row, const std::string& cell) {
             row.included = cell.empty() || read_flag(cell);
           }};
@@ -189,6 +218,34 @@ const std::vector<Field>& fields() {
       text_field("started_at", "when the participant entered, ISO 8601, UTC", &Row::started_at),
       text_field("answered_at", "when the server stored the answer, ISO 8601, UTC",
                  &Row::answered_at),
+      page_field("participant_completed", "boolean",
+                 "TRUE where the participant finished the study",
+                 [](const PageFacts& page) { return flag_text(page.participant_completed); }),
+      page_field("answers_before", "integer", "answers to the page that this one replaced",
+                 [](const PageFacts& page) { return std::to_string(page.answers_before); }),
+      page_field("order_shown", "text", "slots in the order in which the page showed them",
+                 [](const PageFacts& page) { return joined(page.seen.order_shown); }),
+      page_field("swaps", "integer", "how often the button that turns the order round was used",
+                 [](const PageFacts& page) { return std::to_string(page.seen.swaps); }),
+      page_field("all_same", "boolean", "TRUE where the answer was that all look the same",
+                 [](const PageFacts& page) { return flag_text(page.seen.all_same); }),
+      page_field("blurs", "integer", "how often the window lost focus",
+                 [](const PageFacts& page) { return std::to_string(page.seen.blurs); }),
+      page_field("load_failures", "integer", "how often a picture failed to load",
+                 [](const PageFacts& page) { return std::to_string(page.seen.load_failures); }),
+      size_field("window_width", "CSS pixels", &Observations::window, &PageSize::width),
+      size_field("window_height", "CSS pixels", &Observations::window, &PageSize::height),
+      size_field("screen_width", "CSS pixels", &Observations::screen, &PageSize::width),
+      size_field("screen_height", "CSS pixels", &Observations::screen, &PageSize::height),
+      page_field("device_pixel_ratio", "number", "device pixels per CSS pixel",
+                 [](const PageFacts& page) {
+                   const auto& ratio = page.seen.device_pixel_ratio;
+                   return ratio ? number_text(*ratio) : std::string();
+                 }),
+      page_field("page_started_at", "text", "by the browser's clock",
+                 [](const PageFacts& page) { return csv_text(page.seen.started_at); }),
+      page_field("page_answered_at", "text", "by the browser's clock",
+                 [](const PageFacts& page) { return csv_text(page.seen.answered_at); }),
   };
   return list;
 }
@@ -247,6 +304,8 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
                                        const std::string& answered_at) {
   const Page& page = page_of(study, planned);
   const auto ranks = doubled_mid_ranks(answer.order());
+  const auto facts = std::make_shared<PageFacts>();
+  facts->seen = answer.observations;
   std::vector<ResponseRow> rows;
   for (std::size_t slot = 0; slot < planned.slots.size(); ++slot) {
     const Picture& picture = page.pictures.at(planned.slots[slot]);
@@ -274,6 +333,7 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
     row.flipped = answer.observations.flips;
     row.swapped_direction = answer.observations.swaps > 0;
     row.answered_at = answered_at;
+    row.page = facts;
     rows.push_back(std::move(row));
   }
   return rows;
@@ -299,30 +359,25 @@ std::string csv_text(std::string_view cell) {
   return quoted + "\"";
 }
 
-std::string write_responses(const std::vector<ResponseRow>& rows) {
+std::string response_header() {
   std::string text;
-  for (const Field& field : fields()) {
-    text += (text.empty() ? "" : ",") + field.column.name;
-  }
-  text += "\r\n";
-  for (const ResponseRow& row : rows) {
-    bool first = true;
-    for (const Field& field : fields()) {
-      if (!first) text += ',';
-      first = false;
-      text += field.write(row);
-    }
-    text += "\r\n";
-  }
-  return text;
+  for (const Field& field : fields()) text += (text.empty() ? "" : ",") + field.column.name;
+  return text + "\r\n";
 }
 
-std::string write_codebook() {
-  std::string text = "column,type,meaning\r\n";
-  for (const Column& column : response_columns()) {
-    text += csv_text(column.name) + "," + csv_text(column.type) + "," + csv_text(column.meaning) +
-            "\r\n";
+void append_response(const ResponseRow& row, std::string& text) {
+  bool first = true;
+  for (const Field& field : fields()) {
+    if (!first) text += ',';
+    first = false;
+    text += field.write(row);
   }
+  text += "\r\n";
+}
+
+std::string write_responses(const std::vector<ResponseRow>& rows) {
+  std::string text = response_header();
+  for (const ResponseRow& row : rows) append_response(row, text);
   return text;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,13 @@
 #include "study/study.h"
 
 namespace penumbra::study {
+
+/// What every picture of a page shares and only exports need.
+struct PageFacts {
+  Observations seen;
+  bool participant_completed = false;
+  int answers_before = 0;  ///< answers to this page that this one replaced
+};
 
 /// A row of responses.csv: one picture on one page of one participant.
 struct ResponseRow {
@@ -37,6 +45,7 @@ struct ResponseRow {
   bool included = true;
   std::string started_at;
   std::string answered_at;
+  std::shared_ptr<const PageFacts> page;  ///< empty where rows were read from a file
 };
 
 /// Rows of one answered page. `page_index` is the position in the plan.
@@ -57,7 +66,10 @@ const std::vector<Column>& response_columns();
 /// RFC 4180 (CRLF), UTF-8. Text cells that begin with = + - @ (blanks before it or not, or in its
 /// wide form), tab, a line's end or NUL get a leading apostrophe, so that no spreadsheet runs them.
 std::string write_responses(const std::vector<ResponseRow>& rows);
-std::string write_codebook();
+
+/// The same piece by piece, for files that are not held in memory.
+std::string response_header();
+void append_response(const ResponseRow& row, std::string& text);
 
 /// One cell as the writer puts it: quoted where needed, neutralised where dangerous.
 std::string csv_text(std::string_view cell);

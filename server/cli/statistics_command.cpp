@@ -6,6 +6,8 @@
 #include "server/cli/written_file.h"
 #include "server/jobs/durable_file.h"
 #include "study/figures.h"
+#include "study/report/html.h"
+#include "study/report/latex.h"
 #include "study/responses.h"
 #include "study/statistics/report.h"
 
@@ -37,6 +39,8 @@ int analyse(const Session& session, const Options& paths) {
   if (!paths.out.empty()) {
     fs::create_directories(paths.out / "figures");
     write_file(paths.out / "results.json", scenes::json_text(report, 2) + "\n");
+    write_file(paths.out / "results.tex", study::latex_tables(report, options.labels));
+    write_file(paths.out / "report.html", study::html_report(report, {nullptr, {}, figures}));
     write_file(paths.out / "tables.txt", table);
     for (const auto& figure : study::figures_of(report, figures))
       write_file(paths.out / "figures" / (figure.name + ".svg"), figure.svg);
@@ -58,7 +62,8 @@ void add_statistics_command(CLI::App& app, Session& session) {
                    "CSV with what was measured of the pictures (scene, technique, frame_ms_median, "
                    "rms_y, flip, ...), as a sweep writes it")
       ->check(CLI::ExistingFile);
-  command->add_option("--out", options->out, "Folder for results.json, tables.txt and figures");
+  command->add_option("--out", options->out,
+                      "Folder for results.json, results.tex, report.html, tables.txt and figures");
   add_json_flag(*command, session);
   command->callback([options, &session] {
     session.action = [options, &session] { return analyse(session, *options); };

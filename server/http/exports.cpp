@@ -1,10 +1,11 @@
-// What leaves a study: rows, statistics, figures, the archive.
-#include <algorithm>
+// What leaves a study: rows, statistics, figures, the report, the archive.
+#include <fstream>
 
-#include "server/http/archive.h"
+#include "server/http/body.h"
 #include "server/http/reply.h"
 #include "server/http/service.h"
 #include "server/http/studies.h"
+#include "server/http/study_export.h"
 #include "study/statistics/report.h"
 
 namespace penumbra::server::http {
@@ -12,112 +13,110 @@ namespace {
 
 using nlohmann::json;
 
-void append_rows(const FrozenStudy& frozen, const storage::ParticipantData& person,
-                 std::vector<study::ResponseRow>& rows) {
-  const auto plan = frozen.plan(person.participant.place);
-  for (const auto& stored : person.answers) {
-    const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
-    if (planned.kind == study::PageKind::practice) continue;
-    const auto answer = study::parse_answer(stored.body, frozen.study, planned.slots.size());
-    for (auto& row : study::response_rows(frozen.study, frozen.hash, person.participant.pseudonym,
-                                          planned, stored.page, answer, stored.answered_at)) {
-      row.included = !person.excluded();
-      rows.push_back(std::move(row));
-    }
-  }
+StudyExport export_at(Call& call) {
+  auto frozen = published_at(call);
+  const auto counts = call.service.studies.counts(frozen->study.id, frozen->version);
+  return {call.service.participants, std::move(frozen), static_cast<std::size_t>(counts.withdrawn)};
 }
 
-void set_flags(std::vector<study::ResponseRow>& rows, const json& flags) {
-  std::map<std::string, std::string> names;
-  for (const auto& flag : flags) {
-    auto& list = names[flag.at("participant").get<std::string>()];
-    const auto name = flag.at("flag").get<std::string>();
-    if (list.find(name) == std::string::npos) list += (list.empty() ? "" : " ") + name;
-  }
-  for (auto& row : rows)
-    if (const auto found = names.find(row.participant); found != names.end())
-      row.flags = found->second;
+std::filesystem::path work_folder(const Call& call) {
+  return call.service.folder.path() / "tmp";
 }
 
-void send_download(Call& call, const std::string& bytes, const std::string& type,
+/// Sends a file piece by piece. It is unlinked at once: what was opened stays until it was sent.
+void send_download(Call& call, const TemporaryFile& file, const std::string& type,
                    const std::string& name) {
+  auto stream = std::make_shared<std::ifstream>(file.path(), std::ios::binary);
+  const auto size = std::filesystem::file_size(file.path());
+  if (!*stream) throw Error("storage", "the export cannot be read back");
   call.response.status = 200;
   call.response.set_header("Content-Disposition", "attachment; filename=\"" + name + "\"");
-  call.response.set_content(bytes, type);
+  call.response.set_content_provider(
+      size, type, [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        std::string piece(std::min<std::size_t>(length, 256 << 10), '\0');
+        stream->seekg(static_cast<std::streamoff>(offset));
+        stream->read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        return stream->gcount() == static_cast<std::streamsize>(piece.size()) &&
+               sink.write(piece.data(), piece.size());
+      });
+}
+
+std::string download_name(const Call& call, const char* what) {
+  return call.path.at("id") + "-" + what;
 }
 
 void get_responses(Call& call) {
-  const auto frozen = published_at(call);
-  send_download(call, study::write_responses(rows_of(call.service, *frozen)),
-                "text/csv; charset=utf-8", frozen->study.id + "-responses.csv");
+  auto exported = export_at(call);
+  const TemporaryFile file(work_folder(call), ".csv");
+  exported.write_responses(file.path());
+  send_download(call, file, "text/csv; charset=utf-8", download_name(call, "responses.csv"));
 }
 
 void get_results(Call& call) {
-  const auto frozen = published_at(call);
-  send_json(call.response, 200, results_of(*frozen, rows_of(call.service, *frozen)));
-}
-
-std::string participants_csv(Service& service, const FrozenStudy& frozen) {
-  std::string text =
-      "participant,entered_at,completed_at,pages_answered,language,consent_version,test,excluded,"
-      "exclusion_reason,parameters,details\r\n";
-  service.participants.each(frozen.study.id, frozen.version,
-                            [&](const storage::ParticipantData& person) {
-                              const auto& who = person.participant;
-                              const std::vector<std::string> cells{
-                                  who.pseudonym,
-                                  who.entered_at,
-                                  who.completed_at,
-                                  std::to_string(person.answers.size()),
-                                  who.language,
-                                  who.consent_version,
-                                  who.test ? "true" : "false",
-                                  person.excluded() ? "true" : "false",
-                                  person.excluded() ? person.exclusions.back().reason : "",
-                                  who.parameters.dump(),
-                                  who.details.dump()};
-                              for (std::size_t i = 0; i < cells.size(); ++i)
-                                text += (i == 0 ? "" : ",") + study::csv_text(cells[i]);
-                              text += "\r\n";
-                            });
-  return text;
+  send_json(call.response, 200, export_at(call).results());
 }
 
 void get_export(Call& call) {
-  const auto frozen = published_at(call);
-  const auto rows = rows_of(call.service, *frozen);
-  const auto report = results_of(*frozen, rows);
-  const auto options = study::report_options(frozen->study);
-  send_download(call,
-                zip_of({{"responses.csv", study::write_responses(rows)},
-                        {"participants.csv", participants_csv(call.service, *frozen)},
-                        {"codebook.csv", study::write_codebook()},
-                        {"study.json", frozen->study.document.dump(2) + "\n"},
-                        {"results.json", report.dump(2) + "\n"},
-                        {"results.txt", study::statistics_table(report, options)}}),
-                "application/zip", frozen->study.id + "-export.zip");
+  auto exported = export_at(call);
+  const TemporaryFile file(work_folder(call), ".zip");
+  exported.write_archive(file.path(), work_folder(call));
+  send_download(call, file, "application/zip", download_name(call, "export.zip"));
+}
+
+void get_report(Call& call) {
+  auto exported = export_at(call);
+  call.response.status = 200;
+  // One page without scripts: its style and its figures stand in it.
+  call.response.set_header("Content-Security-Policy",
+                           "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; "
+                           "form-action 'none'; frame-ancestors 'none'");
+  call.response.set_content(study::html_report(exported.results(), exported.report_context()),
+                            "text/html; charset=utf-8");
+}
+
+std::vector<study::Figure> figures_at(Call& call) {
+  auto exported = export_at(call);
+  auto options = exported.report_context().figures;
+  options.width_mm = number_in_query(call.request, "width_mm", 40, 1000, 0);
+  if (call.request.has_param("set")) {
+    options.set = call.request.get_param_value("set");
+    if (!exported.results().at("included_sets").contains(options.set))
+      throw bad_value("set", "must be one of the results' included_sets");
+  }
+  return study::figures_of(exported.results(), options);
+}
+
+void list_figures(Call& call) {
+  const std::string at = "/api/v1/studies/" + call.path.at("id") + "/figures/";
+  auto list = json::array();
+  for (const auto& figure : figures_at(call))
+    list.push_back({{"name", figure.name},
+                    {"title", figure.title},
+                    {"scene", figure.scene.empty() ? json(nullptr) : json(figure.scene)},
+                    {"url", at + figure.name + ".svg"}});
+  send_json(call.response, 200, {{"figures", list}});
+}
+
+void get_figure(Call& call) {
+  const std::string& file = call.path.at("figure");
+  for (const auto& figure : figures_at(call)) {
+    if (figure.name + ".svg" != file) continue;
+    call.response.status = 200;
+    call.response.set_content(figure.svg, "image/svg+xml");
+    return;
+  }
+  throw nothing_here();
 }
 
 }  // namespace
-
-std::vector<study::ResponseRow> rows_of(Service& service, const FrozenStudy& frozen) {
-  std::vector<study::ResponseRow> rows;
-  service.participants.each(frozen.study.id, frozen.version,
-                            [&](const storage::ParticipantData& person) {
-                              if (!person.participant.test) append_rows(frozen, person, rows);
-                            });
-  set_flags(rows, study::screening_flags(rows, frozen.study.analysis.screening));
-  return rows;
-}
-
-json results_of(const FrozenStudy& frozen, const std::vector<study::ResponseRow>& rows) {
-  return study::statistics_report(rows, study::report_options(frozen.study));
-}
 
 void add_export_routes(std::vector<Route>& table) {
   const std::string one = "/api/v1/studies/{id}";
   table.push_back({"GET", one + "/responses.csv", Access::researcher, get_responses});
   table.push_back({"GET", one + "/results.json", Access::researcher, get_results});
+  table.push_back({"GET", one + "/report.html", Access::researcher, get_report});
+  table.push_back({"GET", one + "/figures", Access::researcher, list_figures});
+  table.push_back({"GET", one + "/figures/{figure}", Access::researcher, get_figure});
   table.push_back({"GET", one + "/export.zip", Access::researcher, get_export});
 }
 

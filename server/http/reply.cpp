@@ -65,10 +65,11 @@ void set_security_headers(httplib::Response& response) {
   response.set_header("Cross-Origin-Resource-Policy", "same-origin");
   response.set_header("Cross-Origin-Opener-Policy", "same-origin");
   // For every answer: an error page or a file opened by itself runs nothing either.
-  response.set_header("Content-Security-Policy",
-                      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
-                      "blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; "
-                      "frame-ancestors 'none'");
+  if (!response.has_header("Content-Security-Policy"))
+    response.set_header("Content-Security-Policy",
+                        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
+                        "blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; "
+                        "frame-ancestors 'none'");
   if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "no-store");
 }
 

@@ -7,6 +7,7 @@
 #include "server/http/reply.h"
 #include "server/http/secrets.h"
 #include "server/http/service.h"
+#include "server/http/study_export.h"
 #include "study/statistics/report.h"
 
 namespace penumbra::server::http {
@@ -21,6 +22,8 @@ json links_of(const std::string& id) {
           {"participants", self + "/participants"},
           {"responses", self + "/responses.csv"},
           {"results", self + "/results.json"},
+          {"report", self + "/report.html"},
+          {"figures", self + "/figures"},
           {"export", self + "/export.zip"}};
 }
 
@@ -120,8 +123,8 @@ std::map<std::string, json> flags_by_participant(const json& flags) {
 
 void list_participants(Call& call) {
   const auto frozen = published_at(call);
-  const auto flags = flags_by_participant(
-      study::screening_flags(rows_of(call.service, *frozen), frozen->study.analysis.screening));
+  const auto flags = flags_by_participant(study::screening_flags(
+      rows_of(call.service.participants, *frozen), frozen->study.analysis.screening));
   auto list = json::array();
   call.service.participants.each(
       frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
@@ -145,8 +148,8 @@ void put_exclusion(Call& call) {
   if (!call.service.participants.exclude(frozen->study.id, pseudonym,
                                          {body["excluded"], body["reason"], utc_now()}))
     throw nothing_here();
-  const auto flags = flags_by_participant(
-      study::screening_flags(rows_of(call.service, *frozen), frozen->study.analysis.screening));
+  const auto flags = flags_by_participant(study::screening_flags(
+      rows_of(call.service.participants, *frozen), frozen->study.analysis.screening));
   json changed;
   call.service.participants.each(
       frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {

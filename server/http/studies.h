@@ -7,18 +7,11 @@
 #include "server/http/frozen_study.h"
 #include "server/http/routes.h"
 #include "server/storage/participants.h"
-#include "study/responses.h"
 
 namespace penumbra::server::http {
 
 /// The version whose answers a call is about: `version` of the query, else the newest published.
 std::shared_ptr<const FrozenStudy> published_at(Call& call);
-
-/// All rows of a version, with flags and exclusions filled in; practice pages and tests left out.
-std::vector<study::ResponseRow> rows_of(Service& service, const FrozenStudy& frozen);
-
-/// The statistics of a version.
-nlohmann::json results_of(const FrozenStudy& frozen, const std::vector<study::ResponseRow>& rows);
 
 /// One participant as researchers see it.
 nlohmann::json participant_body(const FrozenStudy& frozen, const storage::ParticipantData& person,

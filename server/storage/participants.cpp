@@ -107,11 +107,14 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
   return place;
 }
 
-std::vector<AnswerRecord> current_answers(SQLite::Database& connection, std::int64_t participant) {
+/// The current answers of a participant, or those that were replaced.
+std::vector<AnswerRecord> answers_of(SQLite::Database& connection, std::int64_t participant,
+                                     bool current) {
   SQLite::Statement query(connection,
                           "SELECT page, answer_id, body, answered_at FROM answers "
-                          "WHERE participant = ? AND is_current = 1 ORDER BY page");
+                          "WHERE participant = ? AND is_current = ? ORDER BY page, id");
   query.bind(1, participant);
+  query.bind(2, current ? 1 : 0);
   std::vector<AnswerRecord> found;
   while (query.executeStep())
     found.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
@@ -215,7 +218,7 @@ std::optional<ParticipantRecord> Participants::find(const std::string& token) {
 
 std::vector<AnswerRecord> Participants::answers(std::int64_t participant) {
   return database.read(
-      [&](SQLite::Database& connection) { return current_answers(connection, participant); });
+      [&](SQLite::Database& connection) { return answers_of(connection, participant, true); });
 }
 
 nlohmann::json Participants::answer(
@@ -331,9 +334,10 @@ void Participants::each(const std::string& study, int version,
       query.bind(3, last);
       query.bind(4, portion);
       std::vector<ParticipantData> found;
-      while (query.executeStep()) found.push_back({record_of(query), {}, {}});
+      while (query.executeStep()) found.push_back({record_of(query), {}, {}, {}});
       for (auto& person : found) {
-        person.answers = current_answers(connection, person.participant.key);
+        person.answers = answers_of(connection, person.participant.key, true);
+        person.replaced = answers_of(connection, person.participant.key, false);
         person.exclusions = exclusions_of(connection, person.participant.key);
       }
       return found;

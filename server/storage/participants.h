@@ -47,7 +47,8 @@ struct Exclusion {
 /// A participant with everything that exports need.
 struct ParticipantData {
   ParticipantRecord participant;
-  std::vector<AnswerRecord> answers;  ///< current ones, by page
+  std::vector<AnswerRecord> answers;   ///< current ones, by page
+  std::vector<AnswerRecord> replaced;  ///< earlier ones, by page, oldest first
   std::vector<Exclusion> exclusions;  ///< in order; the last one counts
 
   bool excluded() const { return !exclusions.empty() && exclusions.back().excluded; }

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <thread>
 
+#include "study/csv.h"
+#include "study/responses.h"
 #include "tests/http/running_server.h"
 
 namespace penumbra::server::http {
@@ -320,25 +322,92 @@ TEST_F(AStudy, ExportsARowPerRankedPicture) {
   for (const auto& page : counted["scenes"]) EXPECT_EQ(page["answers"], 4);
 }
 
-TEST_F(AStudy, ExportsAnArchiveThatUnpacks) {
+/// Files of an archive by name.
+std::map<std::string, std::string> unpacked(const std::filesystem::path& file) {
+  std::map<std::string, std::string> files;
+  int failure = 0;
+  zip_t* zip = zip_open(file.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &failure);
+  if (zip == nullptr) return files;
+  for (zip_int64_t i = 0; i < zip_get_num_entries(zip, 0); ++i) {
+    zip_stat_t stat;
+    zip_stat_index(zip, static_cast<zip_uint64_t>(i), 0, &stat);
+    std::string bytes(stat.size, '\0');
+    zip_file_t* entry = zip_fopen_index(zip, static_cast<zip_uint64_t>(i), 0);
+    EXPECT_EQ(zip_fread(entry, bytes.data(), bytes.size()), static_cast<zip_int64_t>(stat.size));
+    EXPECT_EQ(zip_fclose(entry), 0) << stat.name;  // its checksum is right
+    files[stat.name] = std::move(bytes);
+  }
+  zip_discard(zip);
+  return files;
+}
+
+TEST_F(AStudy, ExportsEverythingInOneArchive) {
   publish();
   const auto person = enter();
   answer_all(person, 1);
+  body_of(put(page_of(person, 0), answer(person["pages"][0], 500, 5)), 200, "AnswerReply");
+  body_of(complete(person), 200, "Completion");
+  answer_all(enter(), 100);
   const auto archive = researcher->Get(at + "/export.zip");
   ASSERT_TRUE(archive);
   ASSERT_EQ(archive->status, 200);
   const auto file = folder.path / "export.zip";
   std::ofstream(file, std::ios::binary) << archive->body;
-  int failure = 0;
-  zip_t* zip = zip_open(file.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &failure);
-  ASSERT_NE(zip, nullptr);
+  const auto files = unpacked(file);
+  // Every file is in the codebook, and every file of the codebook is there.
+  std::set<std::string> explained;
+  for (const auto& record : study::parse_csv(files.at("codebook.csv")))
+    explained.insert(record.cells[0]);
+  explained.erase("file");
   std::set<std::string> names;
-  for (zip_int64_t i = 0; i < zip_get_num_entries(zip, 0); ++i)
-    names.insert(zip_get_name(zip, static_cast<zip_uint64_t>(i), 0));
-  zip_discard(zip);
-  for (const std::string name :
-       {"responses.csv", "results.json", "study.json", "codebook.csv", "participants.csv"})
-    EXPECT_TRUE(names.contains(name)) << name;
+  for (const auto& [name, bytes] : files) {
+    names.insert(name.starts_with("figures/") ? "figures/*.svg" : name);
+    EXPECT_FALSE(bytes.empty()) << name;
+  }
+  EXPECT_EQ(names, explained);
+  EXPECT_EQ(files.at("responses.csv"), researcher->Get(at + "/responses.csv")->body);
+  const auto rows = study::parse_responses(files.at("responses.csv"));
+  ASSERT_EQ(rows.size(), 2u * 6u * 9u);
+  EXPECT_FALSE(rows.front().started_at.empty());
+  // A pair each of nine pictures on six pages of two people.
+  EXPECT_EQ(study::parse_csv(files.at("pairs.csv")).size(), 1u + 2u * 6u * 36u);
+  EXPECT_EQ(study::parse_csv(files.at("responses_wide.csv")).size(), 3u);
+  EXPECT_EQ(study::parse_csv(files.at("participants.csv")).size(), 3u);
+  const auto people = json::parse(files.at("responses.json"))["participants"];
+  ASSERT_EQ(people.size(), 2u);
+  EXPECT_FALSE(people[0]["completed_at"].is_null());
+  EXPECT_TRUE(people[1]["completed_at"].is_null());
+  const auto& first = people[0]["pages"][0];
+  EXPECT_EQ(first["answer"]["body"]["difficulty"], 5);
+  ASSERT_EQ(first["earlier_answers"].size(), 1u);
+  EXPECT_EQ(first["earlier_answers"][0]["body"]["difficulty"], 3);
+  EXPECT_EQ(first["pictures_by_slot"].size(), 9u);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "tmp"));
+}
+
+TEST_F(AStudy, ShowsItsReportAndFigures) {
+  publish();
+  EXPECT_EQ(error_of(client->Get(at + "/report.html"), 401), "unauthorized");
+  for (int i = 1; i < 4; ++i) answer_all(enter(), 100 * i);
+  const auto report = researcher->Get(at + "/report.html");
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->status, 200);
+  EXPECT_EQ(report->get_header_value("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_NE(report->get_header_value("Content-Security-Policy").find("default-src 'none'; style"),
+            std::string::npos);
+  EXPECT_NE(report->body.find("Which shadows look real?"), std::string::npos);
+  const auto list = body_of(researcher->Get(at + "/figures"), 200, "FigureList")["figures"];
+  ASSERT_FALSE(list.empty());
+  for (const auto& figure : {list.front(), list.back()}) {
+    const auto svg = researcher->Get(figure["url"].get<std::string>() + "?width_mm=120");
+    ASSERT_TRUE(svg);
+    EXPECT_EQ(svg->status, 200);
+    EXPECT_EQ(svg->get_header_value("Content-Type"), "image/svg+xml");
+    EXPECT_NE(svg->body.find("width=\"120mm\""), std::string::npos);
+  }
+  EXPECT_EQ(error_of(researcher->Get(at + "/figures/none.svg"), 404), "not_found");
+  EXPECT_EQ(error_of(researcher->Get(at + "/figures/worths.svg?set=some"), 400), "bad_value");
+  EXPECT_EQ(error_of(researcher->Get(at + "/figures/worths.svg?width_mm=0"), 400), "bad_value");
 }
 
 TEST_F(AStudy, ExcludesPeopleOnRecordAndTakesThemBack) {
@@ -354,10 +423,16 @@ TEST_F(AStudy, ExcludesPeopleOnRecordAndTakesThemBack) {
                    200, "Participant");
   };
   EXPECT_TRUE(decide(true)["excluded"].get<bool>());
-  EXPECT_NE(researcher->Get(at + "/responses.csv")->body.find("false"), std::string::npos);
+  const auto all_included = [&](bool included) {
+    const auto rows = study::parse_responses(researcher->Get(at + "/responses.csv")->body);
+    return !rows.empty() && std::all_of(rows.begin(), rows.end(),
+                                        [&](const auto& row) { return row.included == included; });
+  };
+  EXPECT_TRUE(all_included(false));
   const auto back = decide(false);
   EXPECT_FALSE(back["excluded"].get<bool>());
   EXPECT_EQ(back["history"].size(), 2u);
+  EXPECT_TRUE(all_included(true));
 }
 
 TEST_F(AStudy, ClosesAndBecomesANewVersionWhenChanged) {

@@ -26,6 +26,25 @@ function counts(study) {
     figure(withdrawn, "withdrawn"), tests ? figure(tests, "previews, not counted") : null);
 }
 
+/// Links to the figures, asked for when first opened: the server computes the results for them.
+function figures_list(path) {
+  const list = h("ul", { class: "small" });
+  const details = h("details", { class: "figure-list" }, h("summary", {}, "Figures for print (SVG)"), list);
+  details.addEventListener("toggle", async () => {
+    if (!details.open || list.childElementCount) return;
+    list.replaceChildren(h("li", { role: "status" }, "Drawing…"));
+    try {
+      const { figures } = await get(path);
+      list.replaceChildren(...figures.map(({ name, title, url }) => h("li", {}, h("a", { href: url, download: `${name}.svg` }, title))));
+    } catch (error) {
+      list.replaceChildren();
+      details.open = false;
+      details.after(h("p", { class: "problems", role: "alert" }, words_of(error)));
+    }
+  });
+  return details;
+}
+
 function pages_table(study) {
   if (study.scenes.length === 0) return null;
   return h("table", { class: "plain" }, h("caption", {}, "Answers so far"),
@@ -50,6 +69,7 @@ class StudyView {
     this.live = h("section", { class: "card" });
     this.problem = h("p", { class: "problems", role: "alert" });
     this.results = h("section", {});
+    this.figures = figures_list(this.path("/figures"));
     this.element = h("div", {}, h("p", {}, h("a", { href: "#studies" }, "All studies")),
       h("h1", { tabindex: "-1" }, study.title), this.live, this.problem, this.results);
     this.draw();
@@ -89,8 +109,10 @@ class StudyView {
       h("div", { class: "actions" },
         study.status === "draft" ? this.action("Render the pictures and publish", "/publish", true) : null,
         study.status === "open" ? this.action("Close the study", "/close", false) : null,
-        study.hash ? [exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
+        study.hash ? [h("a", { class: "quiet", href: this.path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
+          exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
           exported("results.json", "Results (JSON)")] : null),
+      study.hash ? this.figures : null,
     ].flat(Infinity).filter(Boolean));
     this.draw_results();
   }

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "server/http/frozen_study.h"
+#include "server/storage/participants.h"
+#include "study/report/html.h"
+#include "study/responses.h"
+
+/// What leaves a study. Everything is written from the data base in portions of people, so that a
+/// study of any size leaves in bounded memory; none of it needs a running server.
+namespace penumbra::server::http {
+
+/// A file with a name of its own, in a folder; removed with the object.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::filesystem::path& folder, const std::string& extension);
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const std::filesystem::path& path() const { return file; }
+
+ private:
+  std::filesystem::path file;
+};
+
+/// One published version of a study with its answers.
+class StudyExport {
+ public:
+  /// `withdrawn` people deleted their answers.
+  StudyExport(storage::Participants& participants, std::shared_ptr<const FrozenStudy> frozen,
+              std::size_t withdrawn);
+
+  /// The statistics; computed when first asked for.
+  const nlohmann::json& results();
+  study::ReportContext report_context();
+
+  /// responses.csv, practice pages and previews left out.
+  void write_responses(const std::filesystem::path& file);
+
+  /// export.zip, with parts in `work`, a folder on the same disk, while it is made.
+  void write_archive(const std::filesystem::path& archive, const std::filesystem::path& work);
+
+ private:
+  using TakePerson = std::function<void(const storage::ParticipantData&,
+                                        const std::vector<std::vector<study::ResponseRow>>&)>;
+
+  void analyse();
+  void each(const TakePerson& take);
+
+  storage::Participants& participants;
+  std::shared_ptr<const FrozenStudy> frozen;
+  nlohmann::json report;
+  std::map<std::string, std::string> flags;  ///< names by pseudonym, separated by blanks
+  study::Attendance attendance;
+};
+
+/// All rows of a version, with exclusions filled in; practice pages and previews left out, and
+/// everything that statistics do not need.
+std::vector<study::ResponseRow> rows_of(storage::Participants& participants,
+                                        const FrozenStudy& frozen);
+
+}  // namespace penumbra::server::http
