@@ -21,7 +21,8 @@ struct RenderLimits {
   static constexpr std::uint32_t max_size = 16384;  ///< pixels, width or height
   static constexpr std::uint32_t max_light_samples = 65536;
   static constexpr std::uint32_t max_frames = 1000;
-  static constexpr double max_error_bound = 255.0;  ///< levels of 8 bits
+  static constexpr double max_error_bound = 255.0;                        ///< levels of 8 bits
+  static constexpr double max_exposure = 30.0;                            ///< EV, up or down
   static constexpr std::array<std::uint32_t, 3> supersampling{1, 4, 16};  ///< samples per pixel
 };
 
@@ -37,8 +38,9 @@ struct PlanRules {
   bool surfaces = true;  ///< no surface that the camera cannot see
   bool casters = true;   ///< no caster that can shadow nothing visible
   bool textures = true;  ///< no texture that nothing drawn reads
-  /// Maps' depths from the nearest caster that matters to the farthest surface that is seen and lit,
-  /// not from end to end of the scene. Unlike the others it may change a picture, to the better.
+  /// Maps' depths from the nearest caster that matters to the farthest surface that is seen and
+  /// lit, not from end to end of the scene. Unlike the others it may change a picture, to the
+  /// better.
   bool depth_range = true;
 };
 
@@ -53,8 +55,11 @@ struct RenderRequest {
   std::uint32_t supersampling = 1;     ///< samples per pixel of the frame: 1, 4 or 16
   std::uint32_t light_samples = 1024;  ///< rays per pixel and light, for techniques that take many
   std::uint64_t seed = 1;
-  bool visibility = false;   ///< also return one visibility channel per light
-  bool linear = false;       ///< also return linear light before encoding
+  /// Linear light is multiplied by 2^exposure before encoding; EV. Without it: by the scene's
+  /// factor.
+  std::optional<double> exposure;
+  bool visibility = false;  ///< also return one visibility channel per light
+  bool linear = false;      ///< also return linear light before encoding
   /// Light points are drawn round by round until `noise_rms_y` is no more than this, or
   /// light_samples of them are; 0: all of them.
   double error_bound = 0.0;
@@ -65,6 +70,9 @@ struct RenderRequest {
   bool settle = false;
   PlanRules rules;
 };
+
+/// Factor from linear light to what is encoded.
+float exposure_factor(const RenderRequest& request);
 
 /// Device time and pipeline statistics of one pass; counts are of one frame.
 struct PassCost {
@@ -107,7 +115,7 @@ struct RenderResult {
   ImageF uncertainty;  ///< standard error of Y of the encoded picture, 0..255; when asked for
                        ///< and known, which takes a multiple of 16 points for each sample
   std::optional<double> noise_rms_y;  ///< root mean square of `uncertainty`: what it adds to rms_y
-  std::uint32_t light_samples = 0;    ///< drawn in each pixel: all, or fewer where the bound was met
+  std::uint32_t light_samples = 0;  ///< drawn in each pixel: all, or fewer where the bound was met
   std::vector<std::string> light_names;
   Cost cost;
   std::uint64_t non_finite_pixels = 0;  ///< encoded as magenta
@@ -141,7 +149,8 @@ struct RenderControl {
 };
 
 /// Draws frames on one device. A picture with very many samples is drawn window by window, one with
-/// very many light points, or with an error bound, round by round of its points. Not thread-safe; create one per thread.
+/// very many light points, or with an error bound, round by round of its points. Not thread-safe;
+/// create one per thread.
 class Renderer {
  public:
   explicit Renderer(const RendererOptions& options);

@@ -16,10 +16,11 @@ using vulkan::Sampling;
 
 FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
                       const ParameterValues& parameters, const Plan& plan, const Window& window) {
+  const Camera& camera = request.scene->cameras[find_camera(*request.scene, request.camera)];
   return {request,
           parameters,
-          state.upload(request.scene, plan),
-          request.scene->cameras[find_camera(*request.scene, request.camera)],
+          state.upload(request.scene, camera, plan),
+          camera,
           {},
           samples_per_side(request.supersampling),
           window,
@@ -27,10 +28,9 @@ FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
 }
 
 CameraMatrices whole_camera(const FrameSetup& setup) {
-  const glm::vec3 extent = setup.scene.high() - setup.scene.low();
   return camera_matrices(setup.camera, setup.scene.origin(),
                          static_cast<double>(setup.request.width) / setup.request.height,
-                         0.5 * static_cast<double>(glm::length(extent)));
+                         setup.scene.radius());
 }
 
 std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup, const Plan& plan) {
@@ -123,7 +123,7 @@ vulkan::Bindings FrameRun::frame_bindings(std::uint32_t index) {
   frame.ambient = glm::vec4(scene.ambient, 0.0f);
   frame.background_low = glm::vec4(scene.background_low, 0.0f);
   frame.background_high = glm::vec4(scene.background_high, 0.0f);
-  frame.size = glm::vec4(setup_.width(), setup_.height(), setup_.side, scene.exposure);
+  frame.size = glm::vec4(setup_.width(), setup_.height(), setup_.side, exposure_factor(request_));
   frame.window =
       side * glm::vec4(setup_.window.x, setup_.window.y, request_.width, request_.height);
   const GammaTreatment gamma = gamma_treatment(setup_.parameters);
@@ -209,6 +209,7 @@ FaultCounts FrameRun::fault_counts() const {
 
 std::vector<std::string> FrameRun::notes() const {
   std::vector<std::string> notes = notes_;
+  notes.insert(notes.end(), setup_.scene.notes().begin(), setup_.scene.notes().end());
   std::sort(notes.begin(), notes.end());
   notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
   return notes;

@@ -181,7 +181,7 @@ void PictureRun::finish_window(const Window& window) {
 }
 
 ImageF PictureRun::standard_error(const ImageF& linear) const {
-  return frame_.uncertainty()->standard_error(linear, request_.scene->exposure,
+  return frame_.uncertainty()->standard_error(linear, exposure_factor(request_),
                                               gamma_treatment(parameters_).encodes);
 }
 

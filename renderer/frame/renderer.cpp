@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "renderer/error.h"
@@ -9,6 +10,11 @@ namespace penumbra {
 
 const char* renderer_version() {
   return "0.1.0";
+}
+
+float exposure_factor(const RenderRequest& request) {
+  return request.exposure ? static_cast<float>(std::exp2(*request.exposure))
+                          : request.scene->exposure;
 }
 
 namespace {
@@ -28,6 +34,8 @@ void check_request(const RenderRequest& request) {
                                          std::to_string(RenderLimits::max_light_samples));
   if (!(request.error_bound >= 0.0 && request.error_bound <= RenderLimits::max_error_bound))
     throw bad_value("error_bound", "error_bound must be 0 to 255 levels");
+  if (request.exposure && !(std::abs(*request.exposure) <= RenderLimits::max_exposure))
+    throw bad_value("exposure", "exposure must be -30 to 30 EV");
   if (request.frames == 0 || request.frames > RenderLimits::max_frames)
     throw bad_value("frames", "frames must be 1 to " + std::to_string(RenderLimits::max_frames));
 }

@@ -49,11 +49,14 @@ const std::vector<Bounds>& Renderer::State::boxes_of(const std::shared_ptr<const
 }
 
 const GpuScene& Renderer::State::upload(const std::shared_ptr<const Scene>& scene,
-                                        const Plan& plan) {
+                                        const Camera& camera, const Plan& plan) {
+  const SceneFrame frame = scene_frame(*scene, camera);
   return *recent(
       scenes_,
-      [&](const auto& entry) { return entry->serves(scene, plan.instances, plan.textures); },
-      [&] { return std::make_unique<GpuScene>(device, scene, plan.instances, plan.textures); });
+      [&](const auto& entry) { return entry->serves(scene, plan.instances, plan.textures, frame); },
+      [&] {
+        return std::make_unique<GpuScene>(device, scene, plan.instances, plan.textures, frame);
+      });
 }
 
 }  // namespace penumbra

@@ -13,7 +13,8 @@ struct Renderer::State {
   explicit State(const RendererOptions& options);
 
   const std::vector<Bounds>& boxes_of(const std::shared_ptr<const Scene>& scene);
-  const GpuScene& upload(const std::shared_ptr<const Scene>& scene, const Plan& plan);
+  const GpuScene& upload(const std::shared_ptr<const Scene>& scene, const Camera& camera,
+                         const Plan& plan);
 
   vulkan::Device device;
   vulkan::ShaderLibrary shaders;

@@ -83,12 +83,13 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     }
     std::uint32_t count = first.index_count;
     std::size_t next = i + 1;
-    while (next < ranges.size() && ranges[next].material == first.material && visible(ranges[next]))
+    while (next < ranges.size() && ranges[next].material == first.material &&
+           ranges[next].masked == first.masked && visible(ranges[next]))
       count += ranges[next++].index_count;
     bindings.texture("surface_texture", scene.texture_of(first.material),
                      vulkan::Sampling::linear_repeat);
     commands.bind(pipeline, bindings);
-    commands.constants(first.material);
+    commands.constants(glm::uvec2(first.material, first.masked ? 1u : 0u));
     commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
     i = next;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "renderer/scene/coverage.h"
 #include "renderer/vulkan/texel_view.h"
 
 namespace penumbra::reference {
@@ -32,11 +33,6 @@ static_assert(sizeof(HoleTexels) == 48);
 class Gatherer {
  public:
   explicit Gatherer(const GpuScene& scene) : scene_(scene) {
-    std::uint32_t first = 0;
-    for (const Instance& instance : scene.scene().instances) {
-      first_vertex_.push_back(first);
-      first += static_cast<std::uint32_t>(scene.scene().meshes[instance.mesh].positions.size());
-    }
     for (const DrawRange& range : scene.ranges())
       if (range.casts_shadow) add(range);
   }
@@ -69,11 +65,11 @@ class Gatherer {
     const Material& material = scene.materials[range.material];
     HoleTexels out{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = corners[k] - first_vertex_[range.instance];
+      const std::uint32_t vertex = corners[k] - scene_.first_vertex(range.instance);
       out.uvs[k] = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[vertex];
       out.alphas[k] = material.alpha * (mesh.colors.empty() ? 1.0f : mesh.colors[vertex].a);
     }
-    out.cutoff = material.alpha_cutoff;
+    out.cutoff = interpolated_cutoff(material);
     out.first_alpha = alphas_of(material.texture);
     out.size = material.texture < 0
                    ? 1u << 16 | 1u
@@ -98,15 +94,15 @@ class Gatherer {
   }
 
   const GpuScene& scene_;
-  std::vector<std::uint32_t> first_vertex_;
   std::map<int, std::uint32_t> first_alpha_;
 };
 
 /// Boxes grow by what float arithmetic may lose between them and a receiver in the scene.
 void widen(std::vector<Node>& nodes, const GpuScene& scene) {
   const glm::vec3 reach = glm::max(glm::abs(scene.low()), glm::abs(scene.high()));
-  const float margin = 1e-6f * std::max({reach.x, reach.y, reach.z});
   for (Node& node : nodes) {
+    const glm::vec3 own = glm::max(reach, glm::max(glm::abs(node.low), glm::abs(node.high)));
+    const float margin = 1e-6f * std::max({own.x, own.y, own.z});
     node.low -= margin;
     node.high += margin;
   }

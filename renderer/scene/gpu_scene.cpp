@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "renderer/error.h"
+#include "renderer/scene/coverage.h"
 #include "renderer/shaders/shader_types.h"
 
 namespace penumbra {
@@ -80,16 +81,20 @@ vulkan::Image upload_texture(vulkan::Device& device, vulkan::MemoryLedger& ledge
 }
 
 GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
-                   std::vector<InstanceUse> uses, std::vector<bool> textures)
-    : scene_(std::move(scene)), uses_(std::move(uses)), needed_textures_(std::move(textures)) {
+                   std::vector<InstanceUse> uses, std::vector<bool> textures,
+                   const SceneFrame& frame)
+    : scene_(std::move(scene)),
+      uses_(std::move(uses)),
+      needed_textures_(std::move(textures)),
+      frame_(frame) {
   // Of the whole scene: what the plan leaves out must not move a single bit of the rest.
   const Bounds bounds = world_bounds(*scene_);
-  // A whole number of metres keeps built-in coordinates exact after the move.
-  if (!bounds.empty()) {
-    origin_ = glm::round(bounds.center());
-    low_ = to_world(bounds.low);
-    high_ = to_world(bounds.high);
+  radius_ = bounds.radius();
+  if (const Bounds part = near_part(bounds); !part.empty()) {
+    low_ = glm::vec3(part.low);
+    high_ = glm::vec3(part.high);
   }
+  find_coarse_coordinates();
   flatten();
   // Texel buffers, not storage buffers, whose size is limited: a scene may be larger.
   constexpr VkBufferUsageFlags vertex =
@@ -107,17 +112,20 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
 void GpuScene::flatten() {
   struct Part {
     std::uint32_t instance, primitive, material;
+    bool holes;
   };
+  Coverages coverages(*scene_);
   std::vector<Part> parts;
-  std::vector<std::uint32_t> first_vertex;
   std::size_t vertex_count = 0;
   for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
     const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
-    first_vertex.push_back(static_cast<std::uint32_t>(vertex_count));
+    first_vertex_.push_back(static_cast<std::uint32_t>(vertex_count));
     if (!used(i)) continue;
     vertex_count += mesh.positions.size();
     for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
-      parts.push_back({i, p, mesh.primitives[p].material});
+      if (const Coverage coverage = coverages.of(mesh, mesh.primitives[p]);
+          coverage != Coverage::nothing)
+        parts.push_back({i, p, mesh.primitives[p].material, coverage == Coverage::holes});
   }
   if (vertex_count > 0xfffffff0u) throw unsupported("the scene has more than 2^32 vertices");
   position_list_.reserve(vertex_count);
@@ -128,7 +136,7 @@ void GpuScene::flatten() {
     const Instance& instance = scene_->instances[i];
     const Mesh& mesh = scene_->meshes[instance.mesh];
     glm::dmat4 world_from_object = instance.world_from_object;
-    world_from_object[3] -= glm::dvec4(origin_, 0.0);
+    world_from_object[3] -= glm::dvec4(frame_.origin, 0.0);
     const glm::dmat3 normal_matrix = glm::inverse(glm::transpose(glm::dmat3(world_from_object)));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const glm::dvec3 normal = normal_matrix * glm::dvec3(mesh.normals[v]);
@@ -157,7 +165,7 @@ void GpuScene::flatten() {
     range.visible = uses_[part.instance].visible;
     range.casts_shadow = uses_[part.instance].casts;
     range.double_sided = material.double_sided;
-    range.masked = material.alpha_mode == AlphaMode::mask;
+    range.masked = part.holes;
     range.low = glm::vec3(std::numeric_limits<float>::max());
     range.high = -range.low;
     const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
@@ -165,7 +173,7 @@ void GpuScene::flatten() {
       const std::uint32_t corner = i % 3;
       const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
       const std::uint32_t index =
-          first_vertex[part.instance] + mesh.indices[primitive.first_index + turned];
+          first_vertex_[part.instance] + mesh.indices[primitive.first_index + turned];
       index_list_.push_back(index);
       range.low = glm::min(range.low, position_list_[index]);
       range.high = glm::max(range.high, position_list_[index]);
@@ -181,7 +189,7 @@ void GpuScene::upload_materials(vulkan::Device& device) {
     data.base_color = glm::vec4(material.base_color, material.alpha);
     data.emissive = glm::vec4(material.emissive, 0.0f);
     data.surface = {material.specular, std::clamp(material.shininess, 1.0f, 1024.0f),
-                    material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 0.0f,
+                    material.alpha_mode == AlphaMode::mask ? interpolated_cutoff(material) : 0.0f,
                     material.texture >= 0 ? 1.0f : 0.0f};
     list.push_back(data);
   }
@@ -205,10 +213,10 @@ const SceneAdjacency& GpuScene::adjacency(vulkan::Device& device) const {
     auto made = std::make_unique<SceneAdjacency>();
     made->host = build_adjacency(position_list_, index_list_, ranges_);
     vulkan::MemoryLedger ledger;
-    made->indices = upload(
-        device, ledger, "adjacency", made->host.indices.data(),
-        made->host.indices.size() * sizeof(std::uint32_t),
-        VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    made->indices =
+        upload(device, ledger, "adjacency", made->host.indices.data(),
+               made->host.indices.size() * sizeof(std::uint32_t),
+               VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     made->host.indices = {};
     adjacency_ = std::move(made);
   }

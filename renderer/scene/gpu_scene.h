@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <typeindex>
 #include <vector>
 
@@ -25,8 +28,22 @@ struct DrawRange {
   bool visible = true;       ///< as the plan has it
   bool casts_shadow = true;  ///< as the plan has it
   bool double_sided = false;
-  bool masked = false;
+  bool masked = false;  ///< has holes
 };
+
+/// Where coordinates on the device begin, and how far around there matters.
+struct SceneFrame {
+  glm::dvec3 origin{0.0};
+  /// Maps, volumes and tolerances are fitted to what lies no farther from the origin along any
+  /// axis, metres. Infinite where that is everything.
+  double reach = std::numeric_limits<double>::infinity();
+
+  friend bool operator==(const SceneFrame&, const SceneFrame&) = default;
+};
+
+/// The middle of the scene, as long as floats counted from there are fine enough for what the
+/// camera sees; the camera's place where the scene reaches too far for that.
+SceneFrame scene_frame(const Scene& scene, const Camera& camera);
 
 /// A scene on the device, flattened: every instance's triangles stand in world space in one vertex
 /// and one index buffer, sorted by material. World space here is the scene's moved by -origin, so
@@ -35,7 +52,7 @@ class GpuScene {
  public:
   /// Uploads what is used: instances that are visible or cast, textures whose flag is set.
   GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
-           std::vector<InstanceUse> uses, std::vector<bool> textures);
+           std::vector<InstanceUse> uses, std::vector<bool> textures, const SceneFrame& frame);
 
   /// Of a vertex: its position, and its normal, texture coordinates and colour.
   static constexpr std::uint64_t vertex_bytes = 12 + 24;
@@ -43,15 +60,26 @@ class GpuScene {
   const Scene& scene() const { return *scene_; }
   /// Whether this is what such a plan needs, no more and no less.
   bool serves(const std::shared_ptr<const Scene>& scene, const std::vector<InstanceUse>& uses,
-              const std::vector<bool>& textures) const {
-    return scene_ == scene && uses_ == uses && needed_textures_ == textures;
+              const std::vector<bool>& textures, const SceneFrame& frame) const {
+    return scene_ == scene && uses_ == uses && needed_textures_ == textures && frame_ == frame;
   }
-  glm::dvec3 origin() const { return origin_; }
+  glm::dvec3 origin() const { return frame_.origin; }
   glm::vec3 to_world(const glm::dvec3& scene_point) const {
-    return glm::vec3(scene_point - origin_);
+    return glm::vec3(scene_point - frame_.origin);
   }
-  glm::vec3 low() const { return low_; }  ///< box around the whole scene, used or not, world
+  /// Box around the whole scene, used or not, as far as the frame reaches; world.
+  glm::vec3 low() const { return low_; }
   glm::vec3 high() const { return high_; }
+  double radius() const { return radius_; }  ///< of the whole scene, metres
+  /// Whether parts of the scene lie beyond the frame's reach.
+  bool is_far() const { return std::isfinite(frame_.reach); }
+  /// The part of a box in the scene's coordinates that lies within reach, in world space; may be
+  /// empty.
+  Bounds near_part(const Bounds& box) const;
+  /// What floats cannot bear in this scene, for people.
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// Of an instance that is used: its first vertex among positions().
+  std::uint32_t first_vertex(std::uint32_t instance) const { return first_vertex_[instance]; }
 
   const std::vector<glm::vec3>& positions() const { return position_list_; }
   const std::vector<std::uint32_t>& indices() const { return index_list_; }
@@ -81,11 +109,15 @@ class GpuScene {
   void flatten();
   bool used(std::size_t instance) const { return uses_[instance].visible || uses_[instance].casts; }
   void upload_materials(vulkan::Device& device);
+  void find_coarse_coordinates();
 
   std::shared_ptr<const Scene> scene_;
   std::vector<InstanceUse> uses_;
   std::vector<bool> needed_textures_;
-  glm::dvec3 origin_{0.0};
+  SceneFrame frame_;
+  double radius_ = 0.0;
+  std::vector<std::string> notes_;
+  std::vector<std::uint32_t> first_vertex_;  ///< by instance
   glm::vec3 low_{0.0f};
   glm::vec3 high_{0.0f};
   std::vector<glm::vec3> position_list_;

@@ -343,8 +343,12 @@ std::vector<Bounds> instance_boxes(const Scene& scene) {
   Bounds all;
   for (const Bounds& box : boxes) all.add(box);
   if (all.empty()) return boxes;
-  const double pad = 1e-6 * (glm::length(all.size()) + 1e-3);
+  const glm::dvec3 eye = scene.cameras.front().position;
   for (Bounds& box : boxes) {
+    // What is far away must not widen what is near: coordinates there are counted from nearby (see
+    // SceneFrame).
+    const double nearby = 1024.0 * (glm::length(box.size()) + glm::length(box.center() - eye));
+    const double pad = 1e-6 * (std::min(glm::length(all.size()), nearby) + 1e-3);
     box.low -= pad;
     box.high += pad;
   }

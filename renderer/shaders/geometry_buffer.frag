@@ -12,7 +12,7 @@ layout(location = 2) out vec4 out_radiance;
 
 layout(std430) readonly buffer MaterialBlock { MaterialData materials[]; };
 uniform sampler2D surface_texture;
-layout(push_constant) uniform DrawBlock { uint material; } draw;
+layout(push_constant) uniform DrawBlock { uint material; uint has_holes; } draw;
 
 // Textures and materials arrive decoded once; the gamma parameter may ask for none or twice.
 vec3 decoded(vec3 linear_color) {
@@ -25,7 +25,7 @@ void main() {
   MaterialData material = materials[draw.material];
   vec4 color = material.base_color * vertex_color;
   if (material.surface.w > 0.5) color *= texture(surface_texture, surface_uv);
-  if (color.a < material.surface.z) discard;
+  if (draw.has_holes != 0u && color.a < material.surface.z) discard;
 
   // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it
   // in clipped triangles. Both normals look towards the viewer.

@@ -1,5 +1,5 @@
-// Structures and constants that C++ and GLSL share: this is their only definition. Members are vec4,
-// uvec4 and mat4 only, so that std140, std430 and C++ agree on the layout.
+// Structures and constants that C++ and GLSL share: this is their only definition. Members are
+// vec4, uvec4 and mat4 only, so that std140, std430 and C++ agree on the layout.
 #ifndef PENUMBRA_SHADER_TYPES_H
 #define PENUMBRA_SHADER_TYPES_H
 #ifdef __cplusplus
@@ -15,8 +15,8 @@ using glm::vec4;
 
 // Light points handled by one batch: one bit each in a mask.
 PENUMBRA_CONSTANT int points_per_batch = 32;
-// Independent sets that the points of a light come in, where its technique asks for them: place i of a
-// batch belongs to set i % scramble_count.
+// Independent sets that the points of a light come in, where its technique asks for them: place i
+// of a batch belongs to set i % scramble_count.
 PENUMBRA_CONSTANT int scramble_count = 16;
 // Most samples of a pixel.
 PENUMBRA_CONSTANT int max_supersampling = 16;
@@ -25,10 +25,10 @@ PENUMBRA_CONSTANT int light_kind_spot = 0;
 PENUMBRA_CONSTANT int light_kind_directional = 1;
 PENUMBRA_CONSTANT int light_kind_point = 2;
 
-/// Constants of a frame. World space is the scene's, moved so that its middle is the origin: offsets
-/// of 1e7 m cost no precision.
+/// Constants of a frame. World space is the scene's, moved by SceneFrame::origin: offsets of 1e7 m
+/// cost no precision.
 struct FrameData {
-  mat4 clip_from_world;   // reversed depth, infinite far plane
+  mat4 clip_from_world;  // reversed depth, infinite far plane
   mat4 world_from_clip;
   vec4 camera_position;   // xyz world; w 1 for perspective, 0 for orthographic
   vec4 camera_direction;  // xyz unit, into the scene; w near plane, m
@@ -36,19 +36,20 @@ struct FrameData {
   vec4 background_low;    // rgb linear, horizon
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
-  vec4 window;            // samples: xy of the frame's first in the whole picture, zw of all of that
-  uvec4 options;          // x times that colours are decoded, y frame index, z seed, w encodes
+  vec4 window;    // samples: xy of the frame's first in the whole picture, zw of all of that
+  uvec4 options;  // x times that colours are decoded, y frame index, z seed, w encodes
 };
 
 struct LightData {
   vec4 position;   // xyz world, w kind
   vec4 direction;  // xyz from the light into the scene, w range in m (0 unlimited)
   vec4 color;      // rgb colour times intensity, w 1 for inverse-square attenuation
-  vec4 cone;       // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight of a point
-  vec4 extent;     // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half height;
-                   // m, or tangents of the angle when directional
-  vec4 right;      // xyz unit, along a rectangle's width
-  vec4 up;         // xyz unit, along its height
+  vec4 cone;  // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight
+              // of a point
+  vec4 extent;  // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half
+                // height; m, or tangents of the angle when directional
+  vec4 right;  // xyz unit, along a rectangle's width
+  vec4 up;     // xyz unit, along its height
 };
 
 struct MaterialData {
@@ -57,12 +58,12 @@ struct MaterialData {
   vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
 };
 
-// Faces of a map: one for a spot or directional light, six for a point light.
+// Faces of a map: one for a spot or directional light, six for a point light or a wide spot light.
 PENUMBRA_CONSTANT int max_map_faces = 6;
 
 /// One view from the light. A point x of it lies at origin + s (forward + a right + b up) when
-/// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the map
-/// (b downwards) and s the distance along `forward`.
+/// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the
+/// map (b downwards) and s the distance along `forward`.
 struct MapFace {
   mat4 clip_from_world;
   vec4 origin;   // xyz world, w 1 for perspective
@@ -77,15 +78,15 @@ struct MapData {
   vec4 texel;  // x map size, y kernel radius in texels, z constant bias in m, w slope scale
 };
 
-/// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions that
-/// need not be unit.
+/// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions
+/// that need not be unit.
 struct ShaftData {
-  vec4 box_low;     // box of the batch; w 1 for positions, 0 for directions
-  vec4 box_high;    // w distance that receivers are moved along their normal, m
-  vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre,
-                    // m, or a tangent for directions
+  vec4 box_low;    // box of the batch; w 1 for positions, 0 for directions
+  vec4 box_high;   // w distance that receivers are moved along their normal, m
+  vec4 whole_low;  // box of the whole extent; w distance of its farthest point from the centre,
+                   // m, or a tangent for directions
   vec4 whole_high;
-  uvec4 unused;     // x bits of points that the batch does not have
+  uvec4 unused;  // x bits of points that the batch does not have
 };
 
 #ifdef __cplusplus

@@ -10,6 +10,9 @@
 namespace penumbra::shadow_maps {
 namespace {
 
+/// Half angle of the widest spot light that is served by one view, degrees.
+constexpr double widest_single_view = 75.0;
+
 struct Axes {
   glm::dvec3 forward;
   glm::dvec3 up;
@@ -50,9 +53,10 @@ shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double hal
 
 /// Widens near..far by the part of a box between the face's side planes. A box that reaches past
 /// them would else begin behind the light.
-void extend_range(const shader::MapFace& face, const Bounds& box, const glm::dvec3& scene_origin,
+void extend_range(const shader::MapFace& face, const Bounds& box, const GpuScene& scene,
                   double& near, double& far) {
-  const Bounds world{box.low - scene_origin, box.high - scene_origin};
+  const Bounds world = scene.near_part(box);
+  if (world.empty()) return;
   const auto sides = side_planes(glm::dmat4(face.clip_from_world));
   const glm::dvec3 origin(face.origin);
   if (contains(world, origin)) near = std::min(near, 0.0);
@@ -63,17 +67,34 @@ void extend_range(const shader::MapFace& face, const Bounds& box, const glm::dve
   });
 }
 
-Bounds bounds_along(const GpuScene& scene, const Axes& axes) {
+/// What a directional light's map covers: the whole scene, or what is seen of it where it reaches
+/// too far.
+Bounds covered(const GpuScene& scene, const LightFit& fit) {
+  const Bounds whole{scene.low(), scene.high()};
+  if (!scene.is_far()) return whole;
+  Bounds seen;
+  for (const Bounds& box : fit.receivers)
+    if (const Bounds part = scene.near_part(box); !part.empty()) seen.add(part);
+  return seen.empty() ? whole : seen;
+}
+
+Bounds bounds_along(const Bounds& box, const Axes& axes) {
   const glm::dvec3 right = glm::cross(axes.forward, axes.up);
   Bounds bounds;
-  const glm::dvec3 low(scene.low());
-  const glm::dvec3 high(scene.high());
+  const glm::dvec3 low = box.low;
+  const glm::dvec3 high = box.high;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 point((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                            (corner & 4) != 0 ? high.z : low.z);
     bounds.add({glm::dot(point, right), glm::dot(point, axes.up), glm::dot(point, axes.forward)});
   }
   return bounds;
+}
+
+/// A wide cone's one view would have few texels left for its middle, and none beyond a right angle.
+bool has_six_faces(const WorldLight& light) {
+  return light.kind == LightKind::point ||
+         (light.kind == LightKind::spot && light.source->outer_angle > widest_single_view);
 }
 
 }  // namespace
@@ -87,7 +108,7 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const L
   if (light.kind == LightKind::directional) {
     const Axes axes{light.direction, light.up};
     const glm::dvec3 right = glm::cross(axes.forward, axes.up);
-    const Bounds bounds = bounds_along(scene, axes);
+    const Bounds bounds = bounds_along(covered(scene, fit), axes);
     const glm::dvec3 center = bounds.center();
     const double half = std::max(0.5 * std::max(bounds.size().x, bounds.size().y), 1e-6) * widen;
     const glm::dvec3 origin = center.x * right + center.y * axes.up + bounds.low.z * axes.forward;
@@ -95,7 +116,7 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const L
   } else {
     std::vector<Axes> axes{{light.direction, light.up}};
     double tangent = std::tan(glm::radians(light.source->outer_angle));
-    if (light.kind == LightKind::point) {
+    if (has_six_faces(light)) {
       axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
               {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
       tangent = 1.0;
@@ -108,8 +129,8 @@ LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const L
   // shadows nothing.
   double unused = -near;
   for (const shader::MapFace& face : view.faces) {
-    for (const Bounds& box : fit.casters) extend_range(face, box, scene.origin(), near, unused);
-    for (const Bounds& box : fit.receivers) extend_range(face, box, scene.origin(), near, far);
+    for (const Bounds& box : fit.casters) extend_range(face, box, scene, near, unused);
+    for (const Bounds& box : fit.receivers) extend_range(face, box, scene, near, far);
   }
   if (!(far > 0.0)) far = 1.0;  // nothing before the light
   // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.

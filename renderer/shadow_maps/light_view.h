@@ -8,7 +8,8 @@
 
 namespace penumbra::shadow_maps {
 
-/// How a light sees the scene: one face for spot and directional lights, six for a point light.
+/// How a light sees the scene: one face for spot and directional lights, six for point lights and
+/// wide spot lights.
 struct LightView {
   std::vector<shader::MapFace> faces;
   float near_distance = 0.0f;  ///< metres along a face's forward axis

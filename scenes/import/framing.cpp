@@ -3,14 +3,19 @@
 
 #include "scenes/generators/scene_builder.h"
 #include "scenes/import/import.h"
+#include "scenes/import/model_bounds.h"
 
 namespace penumbra::scenes {
 namespace {
 
+/// Between model and ground, as a share of the model's radius.
+constexpr double ground_gap = 2e-3;
+
 /// Slab of grey under the model, wide enough for its shadow.
 void add_ground(Scene& scene, const Bounds& model) {
   const double radius = model.radius();
-  const double reach = 4.0 * radius, top = model.low.y;
+  // Clearly below: in one plane with a face of the model, both would be seen in turn.
+  const double reach = 4.0 * radius, top = model.low.y - ground_gap * radius;
   Material grey;
   grey.name = "ground";
   grey.base_color = glm::vec3(0.6f);
@@ -48,7 +53,7 @@ void add_light(Scene& scene, const Bounds& model) {
   scene.notes.push_back("the file has no lights: a key light was added above, to the left");
 }
 
-void add_camera(Scene& scene, const Bounds& model) {
+void add_camera(Scene& scene, const Bounds& model, std::size_t strays) {
   const double radius = model.radius();
   Camera camera;
   camera.name = "default";
@@ -59,24 +64,27 @@ void add_camera(Scene& scene, const Bounds& model) {
   camera.position = model.center() + 1.05 * radius / 0.3420201433256687 * from;
   camera.near_plane = 0.01 * radius;
   scene.cameras.push_back(camera);
-  scene.notes.push_back("the file has no camera: one was added that frames everything");
+  scene.notes.push_back(
+      "the file has no camera: one was added that frames everything" +
+      (strays > 0 ? " but " + std::to_string(strays) + " far vertices" : std::string()));
 }
 
 }  // namespace
 
 void complete_import(Scene& scene) {
-  Bounds model = world_bounds(scene);
+  const Model measured = measure_model(scene);
+  Bounds model = measured.bounds;
   // A single point or a file without triangles still gets a camera that validates.
   if (model.empty()) model.add(glm::dvec3(0.0));
   if (model.radius() < 1e-12) {
     model.add(model.center() + 1e-3);
     model.add(model.center() - 1e-3);
   }
-  if (scene.cameras.empty()) add_camera(scene, model);
+  if (scene.cameras.empty()) add_camera(scene, model, measured.strays);
   if (!scene.lights.empty()) return;
   const glm::dvec3 size = model.size();
   // What is flat and level is a ground already.
-  if (size.y > 0.15 * std::max(size.x, size.z)) add_ground(scene, model);
+  if (!measured.has_floor && size.y > 0.15 * std::max(size.x, size.z)) add_ground(scene, model);
   add_light(scene, model);
 }
 

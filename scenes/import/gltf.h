@@ -67,7 +67,8 @@ constexpr std::size_t max_instances = 1'000'000;
 constexpr std::size_t max_corners = 100'000'000;
 
 /// Sets exposure, ambient and background so that lights in physical units give a picture that is
-/// neither black nor burnt.
+/// neither black nor burnt. Metered over what the scene's first camera sees, so that nothing
+/// outside of its picture changes it.
 void expose(Scene& scene);
 
 /// Scenes written by encode_glb: what glTF has no words for.

@@ -73,8 +73,9 @@ Scene import_gltf(const std::filesystem::path& file, bool complete) {
   if (ours) gltf::read_extras(document, scene);
   notes.write_to(scene.notes);
   if (!ours && complete) {
-    gltf::expose(scene);
+    const bool lit = !scene.lights.empty();
     complete_import(scene);
+    if (lit) gltf::expose(scene);
   }
   return scene;
 }

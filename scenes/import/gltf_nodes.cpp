@@ -226,30 +226,4 @@ void read_nodes(const tinygltf::Model& model, Scene& scene, Notes& notes) {
   if (!model.animations.empty()) notes.add("", "animations are left out");
 }
 
-void expose(Scene& scene) {
-  if (scene.lights.empty()) return;
-  const Bounds bounds = world_bounds(scene);
-  const double radius = bounds.empty() ? 1.0 : std::max(bounds.radius(), 1e-6);
-  const glm::dvec3 center = bounds.empty() ? glm::dvec3(0.0) : bounds.center();
-  // Illuminance at the middle of the scene, or half way out where a light stands inside.
-  double sum = 0.0;
-  for (const Light& light : scene.lights) {
-    const double brightness =
-        static_cast<double>(light.intensity) *
-        static_cast<double>(std::max({light.color.x, light.color.y, light.color.z}));
-    const double distance = std::max(glm::length(light.position - center), 0.5 * radius);
-    sum += light.attenuation == Attenuation::inverse_square ? brightness / (distance * distance)
-                                                            : brightness;
-  }
-  if (!(sum > 0.0) || !std::isfinite(sum)) return;
-  scene.exposure = static_cast<float>(std::clamp(1.2 / sum, 1e-8, 1e8));
-  scene.ambient /= scene.exposure;
-  scene.background_low /= scene.exposure;
-  scene.background_high /= scene.exposure;
-  scene.notes.push_back("the lights are in candela and lux: exposure was set to " +
-                        std::to_string(scene.exposure));
-  scene.notes.push_back(
-      "glTF lights have no extent: their shadows are hard unless a request gives one");
-}
-
 }  // namespace penumbra::scenes::gltf

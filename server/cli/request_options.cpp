@@ -46,6 +46,8 @@ void RequestOptions::add_to(CLI::App& command) {
   key("error-bound", "error_bound",
       "Of the reference: stop once its own error is no more than this, levels of 0..255 "
       "[no bound]");
+  key("exposure", "exposure",
+      "EV: linear light is multiplied by 2^EV before encoding [what the scene has]");
   key("seed", "seed", with_default("Of everything random", defaults.seed));
   command.add_option("--data", data, "Folder of imported scenes");
   command.add_option("--device", device, "Vulkan device: part of its name, or its index");

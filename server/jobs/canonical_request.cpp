@@ -205,6 +205,8 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
       reader.integer("light_samples", defaults.light_samples, 1, RenderLimits::max_light_samples);
   out["error_bound"] =
       reader.number("error_bound", defaults.error_bound, 0.0, RenderLimits::max_error_bound);
+  const double exposure = reader.number("exposure", std::nan(""), -RenderLimits::max_exposure,
+                                        RenderLimits::max_exposure);
   const json lights = reader.object("lights");
   out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
   out["diagnostic"] = reader.text("diagnostic", "");
@@ -224,6 +226,8 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   canonical.scene = scene.scene;
   out["scene_hash"] = scene.hash;
   out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, camera)).name;
+  out["exposure"] =
+      std::isnan(exposure) ? std::log2(static_cast<double>(scene.scene->exposure)) : exposure + 0.0;
   out["lights"] = checked_lights(*scene.scene, lights);
   out["device"] = context.device;
   out["renderer"] = drawing_version();
@@ -261,6 +265,7 @@ RenderRequest to_render_request(const CanonicalRequest& canonical) {
   request.light_samples = from.at("light_samples");
   request.error_bound = from.at("error_bound");
   request.seed = from.at("seed");
+  request.exposure = from.at("exposure").get<double>();
   request.diagnostic = from.at("diagnostic");
   return request;
 }

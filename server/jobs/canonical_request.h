@@ -37,9 +37,9 @@ struct CanonicalRequest {
 inline constexpr std::uint32_t default_frames = 9;
 
 /// Reads a request as POST /api/v1/renders has it: scene, technique, parameters, width, height,
-/// camera, supersampling, light_samples, lights, seed, diagnostic, measure, frames. Throws
-/// bad_value, naming the field and what is allowed, for unknown keys, wrong types and values out of
-/// range; not_found for scene, technique or camera.
+/// camera, supersampling, light_samples, exposure, lights, seed, diagnostic, measure, frames.
+/// Throws bad_value, naming the field and what is allowed, for unknown keys, wrong types and values
+/// out of range; not_found for scene, technique or camera.
 CanonicalRequest read_request(const nlohmann::json& request, const RequestContext& context);
 
 /// The request that is the truth for this one: same scene, camera, size, samples and lights, drawn

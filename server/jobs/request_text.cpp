@@ -29,6 +29,7 @@ const std::map<std::string, Kind>& request_keys() {
                                                 {"supersampling", Kind::integer},
                                                 {"light_samples", Kind::integer},
                                                 {"error_bound", Kind::number},
+                                                {"exposure", Kind::number},
                                                 {"seed", Kind::integer},
                                                 {"frames", Kind::integer},
                                                 {"measure", Kind::boolean}};

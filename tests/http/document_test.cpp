@@ -75,6 +75,8 @@ TEST(TheDocument, GivesTheRangesThatTheRendererHas) {
   EXPECT_EQ(keys.at("light_samples").at("default"), defaults.light_samples);
   EXPECT_EQ(keys.at("error_bound").at("maximum"), RenderLimits::max_error_bound);
   EXPECT_EQ(keys.at("error_bound").at("default"), defaults.error_bound);
+  EXPECT_EQ(keys.at("exposure").at("minimum"), -RenderLimits::max_exposure);
+  EXPECT_EQ(keys.at("exposure").at("maximum"), RenderLimits::max_exposure);
 }
 
 TEST(Yaml, KeepsTheTypesOfItsScalars) {

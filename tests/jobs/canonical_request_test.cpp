@@ -42,6 +42,7 @@ TEST(CanonicalRequest, fills_in_every_default) {
   EXPECT_EQ(canonical.request.at("supersampling"), defaults.supersampling);
   EXPECT_EQ(canonical.request.at("light_samples"), defaults.light_samples);
   EXPECT_EQ(canonical.request.at("seed"), defaults.seed);
+  EXPECT_EQ(canonical.request.at("exposure"), 0.0) << "log2 of the factor of a built-in scene, 1";
   EXPECT_EQ(canonical.request.at("camera"), canonical.scene->cameras.front().name);
   EXPECT_EQ(canonical.request.at("scene_hash").get<std::string>().size(), 32u);
   EXPECT_EQ(canonical.request.at("renderer"), drawing_version());
@@ -56,6 +57,8 @@ TEST(CanonicalRequest, is_the_same_however_its_values_are_written) {
   EXPECT_EQ(read_request(plain_with("width", 1.0 * RenderRequest{}.width), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("parameters", json::object()), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("camera", nullptr), nowhere).id, id);
+  EXPECT_EQ(read_request(plain_with("exposure", 0), nowhere).id, id);
+  EXPECT_EQ(read_request(plain_with("exposure", -0.0), nowhere).id, id);
   EXPECT_EQ(read_request(plain_with("lights", {{"key", json::object()}}), nowhere).id, id);
 }
 
@@ -63,6 +66,7 @@ TEST(CanonicalRequest, has_another_id_when_the_picture_may_differ_and_only_then)
   const std::string id = read_request(plain(), nowhere).id;
   EXPECT_NE(read_request(plain_with("width", 601), nowhere).id, id);
   EXPECT_NE(read_request(plain_with("seed", 2), nowhere).id, id);
+  EXPECT_NE(read_request(plain_with("exposure", -1.5), nowhere).id, id);
   EXPECT_NE(read_request(plain_with("scene", "boxes"), nowhere).id, id);
   EXPECT_NE(read_request(plain(), {{}, "another device", false}).id, id);
   EXPECT_EQ(read_request(plain_with("measure", true), nowhere).id, id);
@@ -95,6 +99,9 @@ TEST(CanonicalRequest, names_the_field_that_is_out_of_range) {
   EXPECT_EQ(refused_field(plain_with("supersampling", 16)), "accepted");
   EXPECT_EQ(refused_field(plain_with("light_samples", 0)), "light_samples");
   EXPECT_EQ(refused_field(plain_with("light_samples", 65537)), "light_samples");
+  for (const double exposure : {-30.5, 30.5, 1e300})
+    EXPECT_EQ(refused_field(plain_with("exposure", exposure)), "exposure");
+  EXPECT_EQ(refused_field(plain_with("exposure", "bright")), "exposure");
   EXPECT_EQ(refused_field(plain_with("seed", -1)), "seed");
   EXPECT_EQ(refused_field(plain_with("seed", 1e17)), "seed");
   EXPECT_EQ(refused_field(plain_with("frames", 1001)), "frames");

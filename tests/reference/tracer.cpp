@@ -126,8 +126,9 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene)
   std::memset(faults_.mapped(), 0, faults_.size());
   std::vector<InstanceUse> everything(scene->instances.size());
   std::vector<bool> textures(scene->textures.size(), true);
+  const SceneFrame frame = scene_frame(*scene, scene->cameras.front());
   scene_ = std::make_unique<GpuScene>(device_, std::move(scene), std::move(everything),
-                                      std::move(textures));
+                                      std::move(textures), frame);
 }
 
 std::uint32_t Tracer::unfinished() const {

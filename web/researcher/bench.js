@@ -63,6 +63,7 @@ class Bench {
     this.size = h("input", { type: "number", id: "size", min: limits.width.minimum, max: limits.width.maximum, step: "1", value: limits.width.default, required: true });
     this.supersampling = select("supersampling", limits.supersampling.enum.map((count) => [String(count), String(count)]));
     this.light_samples = h("input", { type: "number", id: "light-samples", min: limits.light_samples.minimum, max: limits.light_samples.maximum, step: "1" });
+    this.exposure = h("input", { type: "number", id: "exposure", min: limits.exposure.minimum, max: limits.exposure.maximum, step: "any" });
     this.parameters = h("div", {});
     this.technique.addEventListener("change", () => this.draw_parameters());
     this.go = h("button", { type: "submit", class: "primary" }, "Render");
@@ -75,6 +76,7 @@ class Bench {
     } } },
     labelled("Scene", this.scene), labelled("Technique", this.technique), labelled("Width and height, pixels", this.size),
     labelled("Samples per pixel", this.supersampling), labelled("Light samples (empty: the default)", this.light_samples),
+    labelled("Exposure, EV (empty: the scene's)", this.exposure),
     this.go, this.state, this.problem, this.parameters);
     this.draw_parameters();
     this.element = h("div", {}, h("h1", { tabindex: "-1" }, "Bench"), h("div", { class: "bench" }, this.form, this.result));
@@ -90,6 +92,7 @@ class Bench {
   request() {
     const size = this.size.valueAsNumber;
     const samples = this.light_samples.valueAsNumber;
+    const exposure = this.exposure.valueAsNumber;
     return {
       scene: this.scene.value,
       technique: this.technique.value,
@@ -98,6 +101,7 @@ class Bench {
       height: size,
       supersampling: Number(this.supersampling.value),
       ...(Number.isFinite(samples) ? { light_samples: samples } : {}),
+      ...(Number.isFinite(exposure) ? { exposure } : {}),
       measure: true,
     };
   }
