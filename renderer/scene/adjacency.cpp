@@ -140,10 +140,19 @@ class InstanceAdjacency {
     return first_at_.try_emplace(positions_[vertex], vertex).first->second;
   }
 
+  std::uint32_t opposite(const Side& side) const {
+    return triangles_[side.triangle].corners[(side.corner + 2u) % 3];
+  }
+
+  /// Two triangles of the same corners, wound in opposite ways: a sheet modelled from both sides.
+  /// Whatever it encloses, one of the two is lit where it is seen, and no volume of a closed body
+  /// may end in a lit surface: each counts as a sheet of its own.
+  void open_twins(const Side& a, const Side& b) {
+    if (a.forward != b.forward && opposite(a) == opposite(b))
+      triangles_[a.triangle].closed = triangles_[b.triangle].closed = false;
+  }
+
   void couple(const Side& a, const Side& b, Components& components) {
-    const auto opposite = [&](const Side& side) {
-      return triangles_[side.triangle].corners[(side.corner + 2u) % 3];
-    };
     triangles_[a.triangle].opposite[a.corner] = opposite(b);
     triangles_[b.triangle].opposite[b.corner] = opposite(a);
     components.join(a.triangle, b.triangle);
@@ -152,7 +161,10 @@ class InstanceAdjacency {
   }
 
   void pair_up(std::span<const Side> sides, Components& components) {
-    if (sides.size() == 2) return couple(sides[0], sides[1], components);
+    if (sides.size() == 2) {
+      open_twins(sides[0], sides[1]);
+      return couple(sides[0], sides[1], components);
+    }
     if (sides.size() > 2) ++out_.non_manifold_edges;
     std::vector<bool> paired(sides.size(), false);
     struct Pair {
@@ -166,6 +178,7 @@ class InstanceAdjacency {
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const std::size_t end = std::min(sides.size(), i + most_weighed);
       for (std::size_t j = i + 1; j < end; ++j) {
+        open_twins(sides[i], sides[j]);
         const bool opposed = sides[i].forward != sides[j].forward;
         const float cosine =
             glm::dot(triangles_[sides[i].triangle].normal, triangles_[sides[j].triangle].normal);

@@ -16,8 +16,9 @@ struct AdjacencyGroup {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
   std::uint32_t instance = 0;
-  /// Every edge of every triangle has a neighbour that runs along it in the opposite direction: the
-  /// triangles enclose space, and those turned away from the light are enough to cast the shadow.
+  /// Every edge of every triangle has a neighbour that runs along it in the opposite direction, and
+  /// no triangle has a reversed twin: the triangles enclose space, and those turned away from the
+  /// light are enough to cast the shadow.
   bool closed = false;
   bool casts_shadow = true;
   glm::vec3 low{0.0f};  ///< box, world

@@ -61,12 +61,14 @@ Parameter bleeding_parameter(double default_value) {
 Parameter deviation_parameter() {
   Parameter deviation;
   deviation.name = "minimum_deviation";
-  deviation.default_value = 0.001;
+  deviation.default_value = 0.0001;
   deviation.minimum = 0.0;
-  deviation.maximum = 100.0;
-  deviation.unit = "m";
+  deviation.maximum = 1.0;
+  deviation.unit = "of range";
   deviation.meaning =
-      "Depths are taken to scatter at least this much: hides rounding of the moments.";
+      "Depths are taken to scatter at least by this share of the map's range: hides rounding of "
+      "the "
+      "moments.";
   return deviation;
 }
 

@@ -11,7 +11,7 @@ std::vector<Parameter> blur_parameters();
 /// `bleeding_reduction`: how much dim light is taken for bleeding.
 Parameter bleeding_parameter(double default_value);
 
-/// `minimum_deviation`, in metres: hides rounding of moments.
+/// `minimum_deviation`, a share of the map's range: hides rounding of moments.
 Parameter deviation_parameter();
 
 /// `precision`: fp16 or fp32, for formats of a map. `meaning` says what fails with fewer bits.

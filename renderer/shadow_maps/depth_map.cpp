@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/error.h"
+#include "renderer/scene/caster_defects.h"
 
 namespace penumbra::shadow_maps {
 
@@ -136,6 +137,19 @@ bool knows_two_surfaces(const ParameterValues& parameters) {
          strategy == "auto";
 }
 
+/// Strategies that draw other surfaces than the first rely on casters that enclose space.
+void note_open_casters(PrepareContext& context) {
+  const std::string& strategy = choice_of(context.input.parameters, "bias_strategy");
+  if (strategy != "back-faces" && !knows_two_surfaces(context.input.parameters)) return;
+  const std::size_t open = open_casters(context.scene);
+  if (open > 0)
+    context.notes.push_back(
+        "bias_strategy " + strategy +
+        " takes casters for closed bodies; shadows of those with open edges are "
+        "late or missing: " +
+        std::to_string(open));
+}
+
 VkFormat depth_format(const ParameterValues& parameters) {
   const bool compact =
       parameters.contains("depth_bits") && choice_of(parameters, "depth_bits") == "16";
@@ -190,6 +204,7 @@ void DepthMap::draw(PrepareContext& context, double kernel_radius, double border
                 slope_scale};
   constants_ = context.constants.push(data);
 
+  note_open_casters(context);
   if (knows_two_surfaces(parameters))
     draw_layers(context, view);
   else

@@ -12,7 +12,9 @@ bool is_before(vec3 a, vec3 b) {
   return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
 }
 
-// Whether the light is on the side from which a, b, c runs counter-clockwise. Decided by the light's
+// On which side of a triangle the light is: 1 where a, b, c runs counter-clockwise as seen from it, -1
+// on the other, 0 where it lies in the plane: such a triangle is seen edge-on and throws no volume,
+// whose end would be as wide as the world and have no area. Decided by the light's
 // point against the triangle's own plane, not by a direction to one of its points, and with the
 // corners sorted first: whoever asks, and in whatever order, gets the same bits, and a triangle is
 // turned to the light exactly where its mirror image is not. So both sides of an edge always agree
@@ -21,11 +23,12 @@ bool is_before(vec3 a, vec3 b) {
 // FIRST_CORNER, from the preamble, takes the direction to the corner that is named first, in whatever
 // order. On paper that comes to the same, for all corners lie in the plane; rounding decides otherwise.
 #ifdef FIRST_CORNER
-bool is_lit(vec3 a, vec3 b, vec3 c) {
-  return dot(cross(b - a, c - a), is_directional() ? -light.direction.xyz : light.position.xyz - a) >= 0.0;
+int light_side(vec3 a, vec3 b, vec3 c) {
+  vec3 to_light = is_directional() ? -light.direction.xyz : light.position.xyz - a;
+  return dot(cross(b - a, c - a), to_light) >= 0.0 ? 1 : -1;
 }
 #else
-bool is_lit(vec3 a, vec3 b, vec3 c) {
+int light_side(vec3 a, vec3 b, vec3 c) {
   bool even = true;
   if (is_before(b, a)) { vec3 t = a; a = b; b = t; even = !even; }
   if (is_before(c, b)) { vec3 t = b; b = c; c = t; even = !even; }
@@ -35,9 +38,14 @@ bool is_lit(vec3 a, vec3 b, vec3 c) {
   precise vec3 normal = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
   precise vec3 to_light = is_directional() ? -light.direction.xyz : light.position.xyz - a;
   precise float height = normal.x * to_light.x + normal.y * to_light.y + normal.z * to_light.z;
-  return (height >= 0.0) == even;
+  // In the plane up to rounding: the sine of the angle to it.
+  precise float lengths = length(normal) * length(to_light);
+  if (abs(height) <= 3e-7 * lengths) return 0;
+  return (height > 0.0) == even ? 1 : -1;
 }
 #endif
+
+bool is_lit(vec3 a, vec3 b, vec3 c) { return light_side(a, b, c) > 0; }
 
 // The plane through the light's centre and an edge.
 struct EdgePlane {

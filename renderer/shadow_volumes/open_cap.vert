@@ -20,6 +20,8 @@ void main() {
   int triangle = gl_VertexIndex / 3;
   vec3 corners[3] = vec3[3](corner_of(triangle, 0), corner_of(triangle, 1), corner_of(triangle, 2));
   int corner = gl_VertexIndex % 3;
-  if (!is_lit(corners[0], corners[1], corners[2])) corner = (3 - corner) % 3;
+  int side = light_side(corners[0], corners[1], corners[2]);
+  if (side < 0) corner = (3 - corner) % 3;
+  if (side == 0) corner = 0;  // throws no volume: nothing is covered
   gl_Position = frame.clip_from_world * vec4(corners[corner], 1.0);
 }

@@ -28,7 +28,9 @@ bool throws_volume(out bool lit) {
   vec3 c = world_position[2 * stride];
   lit = false;
   if (a == b || b == c || c == a) return false;
-  lit = is_lit(a, b, c);
+  int side = light_side(a, b, c);
+  lit = side > 0;
+  if (side == 0) return false;
 #ifdef EVERY_EDGE
   return lit;
 #else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "renderer/scene/caster_defects.h"
 #include "renderer/shadow_volumes/hidden_casters.h"
 #include "renderer/shadow_volumes/near_plane.h"
 #include "renderer/shadow_volumes/volume_draws.h"
@@ -49,18 +50,31 @@ vulkan::RenderTargets targets_of(const PrepareContext& context) {
   return targets;
 }
 
-void note_ignored_masks(PrepareContext& context) {
+/// Casters that the camera looks through.
+std::set<std::uint32_t> masked_instances(const PrepareContext& context) {
+  std::set<std::uint32_t> instances;
   for (const DrawRange& range : context.scene.ranges())
-    if (range.masked && range.casts_shadow) {
-      context.notes.push_back(
-          "shadow volumes ignore alpha masks: masked casters cast the shadows of whole triangles");
-      return;
-    }
+    if (range.masked && range.casts_shadow) instances.insert(range.instance);
+  return instances;
 }
 
-/// What is not the closed surface of a body, and what is done with it; where neighbours play a
-/// part.
-void note_defects(PrepareContext& context) {
+void note_ignored_masks(PrepareContext& context) {
+  if (has_masked_casters(context.scene))
+    context.notes.push_back(
+        "shadow volumes ignore alpha masks: masked casters cast the shadows of whole triangles");
+}
+
+/// What is not the closed surface of a body, and what is done with it.
+void note_defects(PrepareContext& context, const VolumeOptions& options) {
+  if (options.every_edge) {
+    if (const std::size_t open = open_casters(context.scene); open > 0)
+      context.notes.push_back(
+          "casters with open edges, of which only triangles that look at the light cast shadows, "
+          "and "
+          "whose shadows are wrong where the camera looks through them: " +
+          std::to_string(open));
+    return;
+  }
   if (context.adjacency == nullptr) return;
   const Adjacency& adjacency = context.adjacency->host;
   std::set<std::uint32_t> open;
@@ -208,7 +222,9 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
     source.preamble += "#define CAPS_ONLY\n";
   }
   add(source, state, false);
-  if (!capped || !draws.any_open()) return;
+  // Counted before the surface, a cap counts where the camera looks through it: through holes of
+  // masks and through sheets from behind.
+  if (options.ablation == Ablation::uncapped || options.every_edge || !draws.any_open()) return;
   vulkan::ProgramSource caps;
   caps.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_volumes/open_cap.vert"}};
   state.vertex_input = vulkan::VertexInput::none;
@@ -253,7 +269,7 @@ VolumeDrawOptions StencilVolumes::draws_wanted(const PrepareContext& context,
 void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options) {
   stencil_ = &context.geometry.depth;
   note_ignored_masks(context);
-  note_defects(context);
+  note_defects(context, options);
   const NearPlane near_plane(context);
   const auto in_shadow = [&](const glm::vec3& low, const glm::vec3& high) {
     return near_plane.may_be_in_shadow_of(low, high);
@@ -267,10 +283,13 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
     wanted.accept = [&](const glm::vec3& low, const glm::vec3& high) {
       return !in_shadow(low, high);
     };
+    wanted.as_sheets = masked_instances(context);
     outside = list_volume_draws(context, wanted);
     add_steps(context, before, outside, steps, nullptr);
+    wanted.as_sheets.clear();
     wanted.accept = in_shadow;
   }
+  if (options.counting == Counting::before) wanted.as_sheets = masked_instances(context);
   draws = list_volume_draws(context, wanted);
   add_steps(context, options, draws, steps, nullptr);
   if (options.near_caps) {

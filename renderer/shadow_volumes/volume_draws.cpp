@@ -90,7 +90,8 @@ VolumeDraws list_volume_draws(const PrepareContext& context, const VolumeDrawOpt
     for (const DrawRange& range : context.scene.ranges()) add(range, false);
   else
     for (const AdjacencyGroup& group : context.adjacency->host.groups)
-      add(group, !group.closed && !options.gaps_ignored);
+      add(group,
+          (!group.closed && !options.gaps_ignored) || options.as_sheets.contains(group.instance));
   return list;
 }
 

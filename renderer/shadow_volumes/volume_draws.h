@@ -40,6 +40,8 @@ struct VolumeDrawOptions {
   bool clamp = false;
   /// Instances that are left out.
   std::set<std::uint32_t> hidden;
+  /// Instances whose triangles each count as a sheet.
+  std::set<std::uint32_t> as_sheets;
   /// Take all meshes for closed ones.
   bool gaps_ignored = false;
   /// Radius of the sphere around the light from which shadows are thrown, m (tangent of the angle

@@ -19,7 +19,7 @@ float calculate_shadow(ShadowQuery query) {
   vec4 moments = read_blurred(query, point);
   if (!is_finite(moments)) return overflow();
   float depth = depth_of_distance(point.distance - point.grant);
-  float deviation = parameter_minimum_deviation * map.range.z;
+  float deviation = parameter_minimum_deviation;
   float lit = positive_bound(moments.xy, depth, deviation);
   if (parameter_components == components_4) lit = min(lit, negative_bound(moments.zw, depth, deviation));
   return reduce_bleeding(lit);

@@ -1,5 +1,6 @@
 #include "renderer/error.h"
 #include "renderer/frame/prepare_context.h"
+#include "renderer/scene/caster_defects.h"
 #include "techniques/occluder-textures/planes.h"
 
 namespace penumbra::techniques {
@@ -64,6 +65,10 @@ class OccluderTextures : public Technique {
         boolean_of(parameters, "bilinear") ? vulkan::Sampling::linear : vulkan::Sampling::nearest;
     upload_planes(context, set);
     upload_textures(context, set, options.resolution);
+    if (has_masked_casters(context.scene))
+      context.notes.push_back(
+          "occluder textures ignore alpha masks: masked casters cast the shadows of whole "
+          "triangles");
     context.notes.push_back(std::to_string(set.planes()) +
                             (authored ? " planes of the scene" : " generated planes") +
                             " stand for " + std::to_string(set.represented) + " of " +

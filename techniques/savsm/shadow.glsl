@@ -18,7 +18,7 @@ float calculate_shadow(ShadowQuery query) {
   MapPoint point = locate(query, 0.5 * float(parameter_kernel));
   if (point.face < 0) return 1.0;
   float depth = depth_of_distance(point.distance - point.grant);
-  float deviation = parameter_minimum_deviation * map.range.z;
+  float deviation = parameter_minimum_deviation;
   return reduce_bleeding(upper_bound(moments_at(query, point), depth, deviation));
 }
 

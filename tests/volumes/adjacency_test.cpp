@@ -94,11 +94,23 @@ TEST(Adjacency, joins_two_triangles_however_they_are_wound) {
   EXPECT_THAT(adjacency_of(two).indices, ElementsAre(0, 0, 1, 3, 2, 2, 1, 0, 2, 2, 3, 3));
 }
 
-TEST(Adjacency, of_two_triangles_back_to_back_encloses_space_only_when_they_are_opposed) {
+TEST(Adjacency, of_two_triangles_back_to_back_encloses_no_space) {
+  // One of the two is lit wherever it is seen: a volume that ends in either is no body's.
   Triangles two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 1}};
-  EXPECT_TRUE(adjacency_of(two).groups[0].closed);
+  EXPECT_FALSE(adjacency_of(two).groups[0].closed);
   two.indices = {0, 1, 2, 0, 1, 2};
   EXPECT_FALSE(adjacency_of(two).groups[0].closed);
+}
+
+TEST(Adjacency, of_a_box_that_is_modelled_from_both_sides_encloses_no_space) {
+  Triangles box = split_box();
+  const std::vector<std::uint32_t> once = box.indices;
+  for (std::size_t i = 0; i + 2 < once.size(); i += 3)
+    box.indices.insert(box.indices.end(), {once[i], once[i + 2], once[i + 1]});
+  const Adjacency adjacency = adjacency_of(box);
+  ASSERT_EQ(adjacency.groups.size(), 1u);
+  EXPECT_FALSE(adjacency.groups[0].closed);
+  EXPECT_EQ(adjacency.open_edges, 0u);
 }
 
 TEST(Adjacency, gives_a_side_of_many_triangles_the_neighbour_with_the_closest_normal) {
