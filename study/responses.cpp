@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <set>
-#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "renderer/error.h"
 #include "study/csv.h"
@@ -250,14 +250,27 @@ const std::vector<Field>& fields() {
   return list;
 }
 
+/// What the header holds, for a message: its first cells.
+std::string seen_columns(const CsvRecord& header, char separator) {
+  constexpr std::size_t most = 5;
+  std::string text = "; separated by " + separator_name(separator) + " it holds ";
+  for (std::size_t i = 0; i < std::min(most, header.cells.size()); ++i) {
+    text += (i > 0 ? ", `" : "`") + header.cells[i].substr(0, 60) + "`";
+  }
+  return text + (header.cells.size() > most ? ", ..." : "");
+}
+
 /// Index of the cell for every field, npos where the file has no such column.
-std::vector<std::size_t> find_columns(const CsvRecord& header) {
+std::vector<std::size_t> find_columns(const CsvRecord& header, char separator) {
   std::vector<std::size_t> cells;
   for (const Field& field : fields()) {
     const std::string& name = field.column.name;
     const auto found = std::find(header.cells.begin(), header.cells.end(), name);
     if (found == header.cells.end()) {
-      if (field.required) throw unreadable("the header has no column `" + name + "`", name);
+      if (field.required) {
+        throw unreadable(
+            "the header has no column `" + name + "`" + seen_columns(header, separator), name);
+      }
       cells.push_back(std::string::npos);
       continue;
     }
@@ -269,13 +282,24 @@ std::vector<std::size_t> find_columns(const CsvRecord& header) {
   return cells;
 }
 
-ResponseRow read_row(const CsvRecord& record, const std::vector<std::size_t>& cells) {
+/// A decimal comma as a point. Where commas separate cells they are no decimal signs.
+std::string decimal_point(std::string cell, char separator) {
+  if (separator != ',' && std::count(cell.begin(), cell.end(), ',') == 1) {
+    cell[cell.find(',')] = '.';
+  }
+  return cell;
+}
+
+ResponseRow read_row(const CsvRecord& record, const std::vector<std::size_t>& cells,
+                     char separator) {
   ResponseRow row;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i] == std::string::npos) continue;
     const std::string& name = fields()[i].column.name;
     try {
-      fields()[i].read(row, record.cells[cells[i]]);
+      const std::string& cell = record.cells[cells[i]];
+      const bool text = fields()[i].column.type == "text";
+      fields()[i].read(row, text ? cell : decimal_point(cell, separator));
     } catch (const Error& error) {
       throw unreadable(
           "line " + std::to_string(record.line) + ", column " + name + ": " + error.what(), name);
@@ -283,6 +307,34 @@ ResponseRow read_row(const CsvRecord& record, const std::vector<std::size_t>& ce
   }
   return row;
 }
+
+/// Pictures seen so far, each on one page of one participant. Names are kept once and numbered.
+class DuplicateCheck {
+ public:
+  bool is_new(const ResponseRow& row) {
+    const Key key{number(row.participant), number(row.scene), number(row.technique),
+                  static_cast<std::uint32_t>(row.page_index),
+                  static_cast<std::uint32_t>(row.repeat)};
+    return seen.insert(key).second;
+  }
+
+ private:
+  using Key = std::array<std::uint32_t, 5>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const {
+      std::size_t hash = 0;
+      for (const std::uint32_t part : key) hash = (hash ^ part) * 0x9E3779B97F4A7C15ull;
+      return hash ^ (hash >> 32);
+    }
+  };
+
+  std::uint32_t number(const std::string& name) {
+    return names.try_emplace(name, static_cast<std::uint32_t>(names.size())).first->second;
+  }
+
+  std::unordered_map<std::string, std::uint32_t> names;
+  std::unordered_set<Key, Hash> seen;
+};
 
 /// Hash of the parameters as the study gave them: FNV-1a over the canonical text, 16 digits. It
 /// tells pictures apart; nothing secret hangs on it.
@@ -377,33 +429,53 @@ void append_response(const ResponseRow& row, std::string& text) {
 
 std::string write_responses(const std::vector<ResponseRow>& rows) {
   std::string text = response_header();
-  for (const ResponseRow& row : rows) append_response(row, text);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    append_response(rows[i], text);
+    // Room for all, judged by the first: growing step by step would keep two copies for a moment.
+    if (i == 0) text.reserve(text.size() * (rows.size() + 1));
+  }
   return text;
 }
 
-std::vector<ResponseRow> parse_responses(std::string_view text) {
-  const auto records = parse_csv(text);
-  if (records.empty()) throw unreadable("the file has no header");
-  const auto cells = find_columns(records.front());
-  std::vector<ResponseRow> rows;
-  std::set<std::tuple<std::string, std::string, int, int, std::string>> seen;
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const CsvRecord& record = records[i];
-    if (record.cells.size() != records.front().cells.size()) {
+ResponseFormat each_response(std::string_view text,
+                             const std::function<void(const ResponseRow&)>& visit,
+                             std::optional<char> separator) {
+  std::vector<std::string> required;
+  for (const Field& field : fields()) {
+    if (field.required) required.push_back(field.column.name);
+  }
+  if (!separator) separator = find_separator(text, required);
+  ResponseFormat format{separator.value_or(','), 0};
+  CsvReader reader(text, format.separator);
+  CsvRecord header;
+  if (!reader.next(header)) throw unreadable("the file has no header");
+  const auto cells = find_columns(header, format.separator);
+  DuplicateCheck duplicates;
+  ResponseRow row;
+  for (CsvRecord record; reader.next(record);) {
+    if (record.cells.size() != header.cells.size()) {
       throw unreadable("line " + std::to_string(record.line) + ": " +
-                       std::to_string(record.cells.size()) + " cells, the header has " +
-                       std::to_string(records.front().cells.size()));
+                       std::to_string(record.cells.size()) + " cells separated by " +
+                       separator_name(format.separator) + ", the header has " +
+                       std::to_string(header.cells.size()));
     }
-    rows.push_back(read_row(record, cells));
-    const ResponseRow& row = rows.back();
-    if (!seen.emplace(row.participant, row.scene, row.page_index, row.repeat, row.technique)
-             .second) {
+    row = read_row(record, cells, format.separator);
+    if (!duplicates.is_new(row)) {
       throw unreadable("line " + std::to_string(record.line) + ", column technique: `" +
                            row.technique + "` stands twice on this page of `" + row.participant +
                            "`",
                        "technique");
     }
+    ++format.rows;
+    visit(row);
   }
+  return format;
+}
+
+std::vector<ResponseRow> parse_responses(std::string_view text, std::optional<char> separator) {
+  std::vector<ResponseRow> rows;
+  each_response(
+      text, [&](const ResponseRow& row) { rows.push_back(row); }, separator);
   return rows;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,10 +75,24 @@ void append_response(const ResponseRow& row, std::string& text);
 /// One cell as the writer puts it: quoted where needed, neutralised where dangerous.
 std::string csv_text(std::string_view cell);
 
+/// How responses were read.
+struct ResponseFormat {
+  char separator = ',';
+  std::size_t rows = 0;
+};
+
 /// Reads what write_responses wrote, and any CSV with at least the columns participant, scene,
-/// technique, rank_1_is_most_realistic and difficulty_1_hard_to_see_5_easy, in any order; further
-/// columns are ignored, a byte order mark and bare line feeds accepted. Throws unreadable whose
-/// field is the column and whose message gives line and column.
-std::vector<ResponseRow> parse_responses(std::string_view text);
+/// technique, rank_1_is_most_realistic and difficulty_1_hard_to_see_5_easy, in any order, and calls
+/// `visit` with each row; further columns are ignored, a byte order mark and bare line feeds
+/// accepted. Cells may also be separated by semicolons or tabs, as spreadsheets of many countries
+/// write them: what the header shows, unless `separator` says it; numbers may then have decimal
+/// commas. Throws unreadable whose field is the column and whose message gives line and column.
+ResponseFormat each_response(std::string_view text,
+                             const std::function<void(const ResponseRow&)>& visit,
+                             std::optional<char> separator = std::nullopt);
+
+/// All rows at once.
+std::vector<ResponseRow> parse_responses(std::string_view text,
+                                         std::optional<char> separator = std::nullopt);
 
 }  // namespace penumbra::study

@@ -1,13 +1,12 @@
 #include "study/study.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <array>
 #include <set>
 
 #include "renderer/error.h"
 #include "renderer/render.h"
+#include "study/digest.h"
 #include "study/study_schema.h"
 
 namespace penumbra::study {
@@ -161,12 +160,13 @@ void read_demographics(const json& list, const TextReader& texts, Study& study) 
 }
 
 void read_screening(const json& value, Screening& screening) {
-  const std::array<std::pair<const char*, double*>, 8> members{{
+  const std::array<std::pair<const char*, double*>, 9> members{{
       {"inverted_rho", &screening.inverted_rho},
       {"inverted_share", &screening.inverted_share},
       {"page_inverted_rho", &screening.page_inverted_rho},
       {"unreliable_rho", &screening.unreliable_rho},
       {"unreliable_tau", &screening.unreliable_tau},
+      {"positional_rho", &screening.positional_rho},
       {"flat_share", &screening.flat_share},
       {"fast_seconds", &screening.fast_seconds},
       {"fast_share", &screening.fast_share},
@@ -247,20 +247,7 @@ Study parse_study(const std::string& text) {
 }
 
 std::string study_hash(const Study& study) {
-  const std::string canonical = study.document.dump();
-  std::array<unsigned char, 32> digest{};
-  unsigned length = 0;
-  if (EVP_Digest(canonical.data(), canonical.size(), digest.data(), &length, EVP_sha256(),
-                 nullptr) != 1) {
-    throw Error("internal", "SHA-256 is not available");
-  }
-  static constexpr char digits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : digest) {
-    text += digits[byte >> 4];
-    text += digits[byte & 15];
-  }
-  return text;
+  return sha256(study.document.dump());
 }
 
 PageRenders page_renders(const Study& study, const Page& page) {

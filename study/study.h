@@ -82,6 +82,7 @@ struct Screening {
   double page_inverted_rho = -0.7;  ///< one page at or below, of an otherwise positive person
   double unreliable_rho = 0.2;      ///< mean rho below
   double unreliable_tau = 0.3;      ///< tau-b between the showings of a repeated page below
+  double positional_rho = 0.7;      ///< mean rho of rank and slot at or beyond, either way
   double flat_share = 0.5;          ///< all equal on more than this share of pages
   double fast_seconds = 2.0;        ///< active seconds per picture below
   double fast_share = 0.5;          ///< ... or below this share of the median participant

@@ -1,10 +1,14 @@
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 
 #include "renderer/error.h"
 #include "scenes/json_text.h"
 #include "server/cli/session.h"
 #include "server/cli/written_file.h"
 #include "server/jobs/durable_file.h"
+#include "study/csv.h"
 #include "study/figures.h"
 #include "study/report/html.h"
 #include "study/report/latex.h"
@@ -20,6 +24,7 @@ struct Options {
   fs::path responses;
   fs::path measures;
   fs::path out;
+  std::string separator;
 };
 
 std::string text_of(const fs::path& path, const char* field) {
@@ -28,22 +33,44 @@ std::string text_of(const fs::path& path, const char* field) {
   return std::move(*text);
 }
 
-int analyse(const Session& session, const Options& paths) {
-  const auto text = text_of(paths.responses, "RESPONSES");
-  study::FigureOptions figures;
-  if (!paths.measures.empty())
-    figures.measures = study::parse_measures(text_of(paths.measures, "--measures"));
-  const study::ReportOptions options;
-  const nlohmann::json report = study::statistics_report(study::parse_responses(text), options);
-  const std::string table = study::statistics_table(report, options);
-  if (!paths.out.empty()) {
-    fs::create_directories(paths.out / "figures");
-    write_file(paths.out / "results.json", scenes::json_text(report, 2) + "\n");
-    write_file(paths.out / "results.tex", study::latex_tables(report, options.labels));
-    write_file(paths.out / "report.html", study::html_report(report, {nullptr, {}, figures}));
-    write_file(paths.out / "tables.txt", table);
+const std::map<std::string, char> separators{
+    {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {",", ','}, {";", ';'}};
+
+int analyse(const Session& session, const Options& given) {
+  const std::string text = text_of(given.responses, "RESPONSES");
+  study::ReportOptions options;
+  if (!given.measures.empty()) {
+    options.measures = study::parse_measures(text_of(given.measures, "--measures"));
+  }
+  std::optional<char> separator;
+  if (!given.separator.empty()) separator = separators.at(given.separator);
+  study::statistics::Gatherer gatherer;
+  const auto format = study::each_response(
+      text, [&](const study::ResponseRow& row) { gatherer.add(row); }, separator);
+  nlohmann::json report = study::statistics_report(gatherer.finish(), options);
+  if (format.separator != ',') {
+    report["notes"].push_back("cells were read as separated by " +
+                              study::separator_name(format.separator) +
+                              ", numbers with decimal commas or points");
+  }
+  std::string table = study::statistics_table(report, options);
+  for (const auto& note : report["notes"]) table += "\nnote: " + note.get<std::string>();
+  for (const auto& warning : report["warnings"]) {
+    if (warning["set"] != "all") continue;
+    table += "\nwarning: " + warning["part"].get<std::string>() + ": " +
+             warning["warning"].get<std::string>();
+  }
+  if (!table.ends_with("\n")) table += "\n";
+  if (!given.out.empty()) {
+    study::FigureOptions figures;
+    figures.measures = options.measures;
+    fs::create_directories(given.out / "figures");
+    write_file(given.out / "results.json", scenes::json_text(report, 2) + "\n");
+    write_file(given.out / "results.tex", study::latex_tables(report, options.labels));
+    write_file(given.out / "report.html", study::html_report(report, {nullptr, {}, figures}));
+    write_file(given.out / "tables.txt", table);
     for (const auto& figure : study::figures_of(report, figures))
-      write_file(paths.out / "figures" / (figure.name + ".svg"), figure.svg);
+      write_file(given.out / "figures" / (figure.name + ".svg"), figure.svg);
   }
   session.print(report, table);
   return 0;
@@ -57,6 +84,10 @@ void add_statistics_command(CLI::App& app, Session& session) {
   command->add_option("RESPONSES", options->responses, "CSV with a row per picture ranked")
       ->required()
       ->check(CLI::ExistingFile);
+  command
+      ->add_option("--separator", options->separator,
+                   "What separates the cells; found from the header unless given")
+      ->check(CLI::IsMember(separators));
   command
       ->add_option("--measures", options->measures,
                    "CSV with what was measured of the pictures (scene, technique, frame_ms_median, "

@@ -21,50 +21,72 @@ void drop_missing(std::vector<double>& a, std::vector<double>& b) {
   b.resize(kept);
 }
 
-}  // namespace
+/// Sums over strata for one coefficient: products, and squares of either side.
+struct Products {
+  std::int64_t both = 0;
+  std::int64_t a = 0;
+  std::int64_t b = 0;
 
-std::optional<double> spearman(const std::vector<double>& a_, const std::vector<double>& b_) {
-  auto a = a_;
-  auto b = b_;
-  drop_missing(a, b);
-  const auto ranks_a = doubled_ranks(a);
-  const auto ranks_b = doubled_ranks(b);
-  const auto mean = static_cast<std::int64_t>(a.size() + 1);  // of doubled ranks
-  std::int64_t product = 0;
-  std::int64_t square_a = 0;
-  std::int64_t square_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    product += (ranks_a[i] - mean) * (ranks_b[i] - mean);
-    square_a += (ranks_a[i] - mean) * (ranks_a[i] - mean);
-    square_b += (ranks_b[i] - mean) * (ranks_b[i] - mean);
+  void add(std::int64_t x, std::int64_t y) {
+    both += x * y;
+    a += x * x;
+    b += y * y;
   }
-  if (square_a == 0 || square_b == 0) return std::nullopt;
-  return static_cast<double>(product) /
-         std::sqrt(static_cast<double>(square_a) * static_cast<double>(square_b));
+  std::optional<double> coefficient() const {
+    if (a == 0 || b == 0) return std::nullopt;
+    return static_cast<double>(both) / std::sqrt(static_cast<double>(a) * static_cast<double>(b));
+  }
+};
+
+void add_ranks(const RankedList& list, Products& products) {
+  const auto ranks_a = doubled_ranks(list.a);
+  const auto ranks_b = doubled_ranks(list.b);
+  const auto mean = static_cast<std::int64_t>(list.a.size() + 1);  // of doubled ranks
+  for (std::size_t i = 0; i < ranks_a.size(); ++i) {
+    products.add(ranks_a[i] - mean, ranks_b[i] - mean);
+  }
 }
 
-std::optional<double> kendall_tau_b(const std::vector<double>& a_, const std::vector<double>& b_) {
-  auto a = a_;
-  auto b = b_;
-  drop_missing(a, b);
+void add_pairs(const RankedList& list, Products& products) {
   const auto sign = [](double x, double y) {
-    return static_cast<int>(x > y) - static_cast<int>(x < y);
+    return static_cast<std::int64_t>(x > y) - static_cast<std::int64_t>(x < y);
   };
-  std::int64_t agreement = 0;
-  std::int64_t untied_a = 0;
-  std::int64_t untied_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
+  for (std::size_t i = 0; i < list.a.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const int order_a = sign(a[i], a[j]);
-      const int order_b = sign(b[i], b[j]);
-      agreement += order_a * order_b;
-      untied_a += order_a * order_a;
-      untied_b += order_b * order_b;
+      products.add(sign(list.a[i], list.a[j]), sign(list.b[i], list.b[j]));
     }
   }
-  if (untied_a == 0 || untied_b == 0) return std::nullopt;
-  return static_cast<double>(agreement) /
-         std::sqrt(static_cast<double>(untied_a) * static_cast<double>(untied_b));
+}
+
+RankedList complete(const std::vector<double>& a, const std::vector<double>& b) {
+  RankedList list{a, b};
+  drop_missing(list.a, list.b);
+  return list;
+}
+
+}  // namespace
+
+std::optional<double> spearman(const std::vector<double>& a, const std::vector<double>& b) {
+  Products products;
+  add_ranks(complete(a, b), products);
+  return products.coefficient();
+}
+
+std::optional<double> kendall_tau_b(const std::vector<double>& a, const std::vector<double>& b) {
+  Products products;
+  add_pairs(complete(a, b), products);
+  return products.coefficient();
+}
+
+RankCorrelation correlate_within(const std::vector<RankedList>& strata) {
+  Products ranks;
+  Products pairs;
+  for (const RankedList& stratum : strata) {
+    const RankedList list = complete(stratum.a, stratum.b);
+    add_ranks(list, ranks);
+    add_pairs(list, pairs);
+  }
+  return {ranks.coefficient(), pairs.coefficient()};
 }
 
 }  // namespace penumbra::study::statistics

@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/roots.hpp>
@@ -24,6 +25,10 @@ double normal_tail(double x) {
   return bm::cdf(bm::complement(bm::normal(), x));
 }
 
+double normal_quantile(double p) {
+  return bm::quantile(bm::normal(), p);
+}
+
 double t_two_sided(double t, double df) {
   if (std::isinf(t)) return 0.0;
   return 2.0 * bm::cdf(bm::complement(bm::students_t(df), std::abs(t)));
@@ -31,6 +36,22 @@ double t_two_sided(double t, double df) {
 
 double t_quantile(double p, double df) {
   return bm::quantile(bm::students_t(df), p);
+}
+
+std::array<double, 2> noncentrality_interval(double t, double df) {
+  const double half = normal_quantile(0.975) * std::sqrt(1.0 + t * t / (2.0 * df));
+  if (df > 200.0 || std::abs(t) > 30.0) return {t - half, t + half};
+  // The distribution function falls as the noncentrality grows.
+  const auto end = [&](double p) {
+    const auto excess = [&](double delta) { return bm::cdf(bm::non_central_t(df, delta), t) - p; };
+    double low = t - 3.0 * half - 3.0;
+    double high = t + 3.0 * half + 3.0;
+    std::uintmax_t iterations = 200;
+    const auto bracket = bm::tools::toms748_solve(excess, low, high,
+                                                  bm::tools::eps_tolerance<double>(40), iterations);
+    return 0.5 * (bracket.first + bracket.second);
+  };
+  return {end(0.975), end(0.025)};
 }
 
 double studentized_range_tail(double q, int k) {

@@ -61,13 +61,43 @@ double normal_p(const std::vector<double>& sizes, double v) {
   return std::min(1.0, 2.0 * normal_tail(std::abs(z) / sigma));
 }
 
+/// tanh(atanh(r) +- 1.96 s / W) with s the standard deviation of W+ - W- and W = n (n + 1) / 2;
+/// [r, 1] or [-1, r] shrink to the point where r is 1 or -1.
+std::array<double, 2> biserial_interval(double r, double n) {
+  const double error = std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 6.0) / (0.5 * n * (n + 1.0));
+  const double half = normal_quantile(0.975) * error;
+  if (std::abs(r) >= 1.0) return {r, r};
+  return {std::tanh(std::atanh(r) - half), std::tanh(std::atanh(r) + half)};
+}
+
+/// Ranks zeros with the others, then drops them: p by the normal, and exact.
+void add_pratt(const std::vector<double>& differences, SignedRank& result) {
+  std::vector<double> sizes;
+  for (const double value : differences) sizes.push_back(std::abs(value));
+  const auto doubled = doubled_ranks(sizes);
+  std::vector<std::int64_t> kept;
+  std::int64_t twice_v = 0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (differences[i] == 0.0) continue;
+    kept.push_back(doubled[i]);
+    twice_v += differences[i] > 0.0 ? doubled[i] : 0;
+    sum += static_cast<double>(doubled[i]);
+    squares += static_cast<double>(doubled[i]) * static_cast<double>(doubled[i]);
+  }
+  const double z = (2.0 * static_cast<double>(twice_v) - sum) / std::sqrt(squares);
+  result.p_pratt = std::min(1.0, 2.0 * normal_tail(std::abs(z)));
+  if (kept.size() <= conditional_at_most) result.p_pratt_exact = exact_p(kept, twice_v);
+}
+
 }  // namespace
 
 PairedT paired_t(const std::vector<double>& differences) {
   PairedT result;
   result.n = differences.size();
   if (result.n == 0) {
-    result.reason = "nobody saw both";
+    result.reason = "no participant saw both";
     return result;
   }
   const auto n = static_cast<double>(result.n);
@@ -94,6 +124,9 @@ PairedT paired_t(const std::vector<double>& differences) {
   }
   result.t = mean / error;
   result.p_value = t_two_sided(*result.t, n - 1.0);
+  result.dz = *result.t / std::sqrt(n);
+  const auto bounds = noncentrality_interval(*result.t, n - 1.0);
+  result.dz_ci95 = {bounds[0] / std::sqrt(n), bounds[1] / std::sqrt(n)};
   return result;
 }
 
@@ -108,7 +141,7 @@ SignedRank signed_rank(const std::vector<double>& differences) {
   SignedRank result;
   result.n = sizes.size();
   if (result.n == 0) {
-    result.reason = differences.empty() ? "nobody saw both" : "all differences are zero";
+    result.reason = differences.empty() ? "no participant saw both" : "all differences are zero";
     return result;
   }
   const auto doubled = doubled_ranks(sizes);
@@ -125,11 +158,20 @@ SignedRank signed_rank(const std::vector<double>& differences) {
   result.v = 0.5 * static_cast<double>(twice_v);
   result.rank_biserial =
       static_cast<double>(2 * twice_v - twice_total) / static_cast<double>(twice_total);
+  result.rank_biserial_ci95 =
+      biserial_interval(*result.rank_biserial, static_cast<double>(result.n));
+  add_pratt(differences, result);
   if (result.n <= conditional_at_most) result.p_exact_conditional = exact_p(doubled, twice_v);
   const bool zeros = result.n < differences.size();
   result.exact = result.n < exact_below && !ties && !zeros;
   result.p_value = result.exact ? *result.p_exact_conditional : normal_p(sizes, *result.v);
   return result;
+}
+
+std::size_t fewest_for_exact(std::size_t tests, double alpha) {
+  std::size_t n = 1;
+  for (double p = static_cast<double>(std::max<std::size_t>(tests, 1)); !(p < alpha); p *= 0.5) ++n;
+  return n;
 }
 
 SignTest sign_test(const std::vector<double>& differences) {
@@ -140,7 +182,7 @@ SignTest sign_test(const std::vector<double>& differences) {
     result.wins_b += value > 0.0 ? 1 : 0;
   }
   if (result.n == 0) {
-    result.reason = "nobody saw both";
+    result.reason = "no participant saw both";
     return result;
   }
   const auto n = static_cast<double>(result.n);

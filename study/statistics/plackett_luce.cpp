@@ -58,7 +58,26 @@ bool all_reached(const std::vector<std::vector<bool>>& edges, bool along) {
   return std::find(reached.begin(), reached.end(), false) == reached.end();
 }
 
-/// An edge leads from whoever was placed before or beside another.
+/// Groups of items that comparisons hold together, whoever won; one group where all are held.
+std::vector<Set> connected_groups(const std::vector<Stage>& stages, std::size_t items) {
+  Set group(items);
+  for (std::size_t i = 0; i < items; ++i) group[i] = i;
+  const auto root = [&](std::size_t item) {
+    while (group[item] != item) item = group[item] = group[group[item]];
+    return item;
+  };
+  for (const Stage& stage : stages) {
+    for (const std::size_t item : stage.left) group[root(item)] = root(stage.left.front());
+  }
+  std::map<std::size_t, Set> members;
+  for (std::size_t i = 0; i < items; ++i) members[root(i)].push_back(i);
+  std::vector<Set> groups;
+  for (auto& [first, set] : members) groups.push_back(std::move(set));
+  std::sort(groups.begin(), groups.end());
+  return groups;
+}
+
+/// An edge leads from an item to those it was placed before or beside.
 bool strongly_connected(const std::vector<Stage>& stages, std::size_t items) {
   std::vector<std::vector<bool>> edges(items, std::vector<bool>(items, false));
   for (const Stage& stage : stages) {
@@ -221,6 +240,23 @@ bool maximise(const Model& model, Eigen::VectorXd& parameters) {
   return false;
 }
 
+/// The maximum with an imaginary item, last of all, that every item beats and loses to; its own
+/// parameter is dropped from the result.
+bool maximise_with_pseudo(std::vector<Ranking> rankings, std::size_t items, double pseudo_rankings,
+                          Eigen::VectorXd& parameters) {
+  for (std::size_t i = 0; i < items; ++i) {
+    rankings.push_back({{{i}, {items}}, pseudo_rankings, 0});
+    rankings.push_back({{{items}, {i}}, pseudo_rankings, 0});
+  }
+  const Model model(stages_of(rankings), items + 1);
+  Eigen::VectorXd all;
+  if (model.overflows() || !maximise(model, all)) return false;
+  const auto n = static_cast<Eigen::Index>(items);
+  parameters.resize(all.size() - 1);
+  parameters << all.head(n - 1), all.tail(all.size() - n);
+  return true;
+}
+
 Matrix rows_of(const Eigen::MatrixXd& matrix) {
   Matrix rows;
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
@@ -238,16 +274,27 @@ PlackettLuce without_fit(const std::string& reason) {
 
 }  // namespace
 
-PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items) {
+PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items,
+                               double pseudo_rankings) {
   if (items < 2) return without_fit("fewer than two techniques");
   const auto stages = stages_of(rankings);
-  if (!strongly_connected(stages, items)) {
+  const auto groups = connected_groups(stages, items);
+  if (groups.size() > 1) {
+    PlackettLuce result = without_fit("not connected: some techniques were never compared");
+    result.groups = groups;
+    return result;
+  }
+  const bool regularised = pseudo_rankings > 0.0;
+  if (!regularised && !strongly_connected(stages, items)) {
     return without_fit("some techniques beat all others every time: worths are unbounded");
   }
   const Model model(stages, items);
   if (model.overflows()) return without_fit("too many sets of techniques could tie");
   Eigen::VectorXd parameters;
-  if (!maximise(model, parameters)) return without_fit("no finite maximum of the likelihood");
+  const bool found = regularised
+                         ? maximise_with_pseudo(rankings, items, pseudo_rankings, parameters)
+                         : maximise(model, parameters);
+  if (!found) return without_fit("no finite maximum of the likelihood");
   const Model::Value value = model.evaluate(parameters);
   const Eigen::MatrixXd inverse = value.information.inverse();
   if (!(inverse.diagonal().maxCoeff() < most_variance)) {

@@ -26,12 +26,21 @@ struct PlackettLuce {
   std::map<std::size_t, double> tie_errors;  ///< of log_ties
   double log_likelihood = 0.0;
   std::string reason;  ///< why there is no fit; everything else is empty then
+  /// Items by the groups that comparisons hold together, where those are several: nothing says how
+  /// one group compares with another.
+  std::vector<std::vector<std::size_t>> groups;
 };
 
 /// Maximum likelihood by Newton's method; no pseudo-rankings. A fit exists where the comparisons
-/// are strongly connected: no set of items beats all others in every ranking (Hunter 2004); else,
-/// and where sets to tie are too many to count, `reason` says so.
-PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items);
+/// are strongly connected: no set of items beats all others in every ranking (Hunter 2004);
+/// otherwise, and where sets to tie are too many to count, `reason` says so.
+///
+/// With `pseudo_rankings` above zero every item also wins and loses so many comparisons with one
+/// imaginary item (Turner et al. 2020: 0.5): worths stay finite where an item beats all others.
+/// Likelihood and errors are then those of the real rankings at these worths. Groups that were
+/// never compared are not fitted either way.
+PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items,
+                               double pseudo_rankings = 0.0);
 
 /// q_i with q_i^2 + q_j^2 close to the variance of every difference i - j (Firth 2000): least
 /// squares of log variances. Empty below three items.

@@ -7,6 +7,8 @@
 
 #include "study/statistics/analysis.h"
 #include "study/statistics/histograms.h"
+#include "study/statistics/provenance.h"
+#include "study/statistics/raters.h"
 #include "study/statistics/screening.h"
 #include "study/statistics/survey_data.h"
 #include "study/statistics/worths.h"
@@ -59,62 +61,42 @@ Selection inverted_turned(const SurveyData& data, const std::vector<Flag>& flags
 }
 
 json analyse_part(const SurveyData& data, const Selection& selection,
-                  std::optional<std::size_t> scene, double alpha) {
+                  std::optional<std::size_t> scene, const statistics::AnalysisSettings& settings) {
   const auto table = participant_table(data, selection, scene);
-  json part = statistics::analyse(data, table, alpha);
+  json part = statistics::analyse(data, table, settings);
   statistics::add_histograms(part, data, selection, scene);
-  part["critical_difference"] = statistics::critical_difference(data, table, alpha);
+  part["critical_difference"] = statistics::critical_difference(data, table, settings.alpha);
   std::vector<std::string> techniques;
   for (const json& row : part["techniques"]) techniques.push_back(row["technique"]);
   part["plackett_luce"] = statistics::worths_json(data, selection, scene, techniques);
   return part;
 }
 
-json analyse_set(const SurveyData& data, const Selection& selection, double alpha) {
+/// "All results of all surveys" as one sample, as in table 4.9 of van Sambeek 2007.
+json pooled_rows(const SurveyData& data, const Selection& selection, double alpha) {
+  json twin = statistics::analyse_as_in_2007(
+      data, participant_table(data, selection, std::nullopt, statistics::Blocks::pages), alpha);
+  twin["unsound"] = true;
+  twin["reason"] =
+      "every page counts as a participant of its own, so that tests reject too often; it stands "
+      "here "
+      "to be held against table 4.9 of van Sambeek 2007";
+  return twin;
+}
+
+json analyse_set(const SurveyData& data, const Selection& selection, const ReportOptions& options) {
+  const statistics::AnalysisSettings settings{options.plan.alpha, options.resampling};
   json scenes = json::array();
   for (std::size_t scene = 0; scene < data.scenes.size(); ++scene) {
-    json part = analyse_part(data, selection, scene, alpha);
+    json part = analyse_part(data, selection, scene, settings);
     part["scene"] = data.scenes[scene];
     scenes.push_back(std::move(part));
   }
-  return {{"scenes", scenes}, {"overall", analyse_part(data, selection, std::nullopt, alpha)}};
-}
-
-json methods_json(const AnalysisPlan& plan) {
-  return {
-      {"alpha", plan.alpha},
-      {"ranks", "mid-ranks among the pictures of a page"},
-      {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
-      {"repeats", "measure reliability only"},
-      {"weights", "difficulty 1 to 5; weighted mean sum(w r) / sum(w)"},
-      {"order", "by weighted mean rank"},
-      {"subsets", "maximal sets of techniques whose paired t does not differ, Bonferroni"},
-      {"quade", "a page's spread is the number of steps told apart"},
-      {"wilcoxon",
-       "zeros dropped; exact below 50 differences without ties or zeros, else "
-       "normal with tie and continuity correction"},
-      {"sign",
-       "ties dropped in p, half in probability_a_better and its Clopper-Pearson "
-       "interval"},
-      {"plackett_luce", "maximum likelihood with ties, every page a ranking; log worths sum to 0"},
-      {"families", "all pairs of one table"}};
-}
-
-json notes_json(const SurveyData& data) {
-  json notes = json::array();
-  std::size_t weighted = 0;
-  for (const auto& page : data.pages) weighted += page.weight ? 1 : 0;
-  if (weighted == 0 && !data.pages.empty()) {
-    notes.push_back("no page has a difficulty: every page weighs 1");
-  } else if (weighted < data.pages.size()) {
-    notes.push_back(std::to_string(data.pages.size() - weighted) +
-                    " pages without a difficulty are left out of weighted means");
-  }
-  if (!data.taken_out.empty()) {
-    notes.push_back(std::to_string(data.taken_out.size()) +
-                    " participants were taken out by a researcher");
-  }
-  return notes;
+  json set = {{"scenes", scenes},
+              {"overall", analyse_part(data, selection, std::nullopt, settings)}};
+  set["overall"]["pooled_rows"] = pooled_rows(data, selection, options.plan.alpha);
+  if (!options.measures.empty()) set["objective"] = objective_json(set, options.measures);
+  return set;
 }
 
 /// Text in a column of `width` characters, counted as UTF-8 code points.
@@ -142,7 +124,7 @@ std::string one_table(const json& part, const std::string& title, const ReportOp
     name_width = std::max(name_width, label(row["technique"]).size() + 2);
   }
   std::ostringstream text;
-  text << title << " (" << part["participants"] << " participants)\n"
+  text << title << "\n"
        << padded("", name_width) << "subset for alpha = " << options.plan.alpha << "\n"
        << padded("technique", name_width);
   for (std::size_t i = 1; i <= part["subsets"].size(); ++i) text << padded(std::to_string(i), cell);
@@ -159,6 +141,10 @@ std::string one_table(const json& part, const std::string& title, const ReportOp
   return text.str();
 }
 
+std::string titled(const std::string& name, const json& part) {
+  return name + " (" + part["participants"].dump() + " participants)";
+}
+
 }  // namespace
 
 ReportOptions report_options(const Study& study) {
@@ -173,18 +159,24 @@ ReportOptions report_options(const Study& study) {
 }
 
 json statistics_report(const std::vector<ResponseRow>& rows, const ReportOptions& options) {
-  const SurveyData data = statistics::gather(rows);
+  return statistics_report(statistics::gather(rows), options);
+}
+
+json statistics_report(const SurveyData& data, const ReportOptions& options) {
   const auto flags = statistics::screen(data, options.plan.screening);
-  const double alpha = options.plan.alpha;
   json report = {{"participants", data.participants.size()},
                  {"pages", data.pages.size()},
+                 {"counts", statistics::counts_json(data, flags)},
                  {"included_sets",
-                  {{"all", analyse_set(data, everything(data), alpha)},
-                   {"without_flagged", analyse_set(data, without_flagged(data, flags), alpha)},
-                   {"inverted_turned", analyse_set(data, inverted_turned(data, flags), alpha)}}},
+                  {{"all", analyse_set(data, everything(data), options)},
+                   {"without_flagged", analyse_set(data, without_flagged(data, flags), options)},
+                   {"inverted_turned", analyse_set(data, inverted_turned(data, flags), options)}}},
                  {"flags", flags_json(data, flags)},
-                 {"methods", methods_json(options.plan)},
-                 {"notes", notes_json(data)}};
+                 {"raters", statistics::raters_json(data)},
+                 {"methods", statistics::methods_json(options)},
+                 {"data_sha256", statistics::data_digest(data)},
+                 {"notes", statistics::notes_json(data)}};
+  report["warnings"] = statistics::warnings_json(report);
   if (!options.study_id.empty()) report["study"] = options.study_id;
   if (!options.study_hash.empty()) report["study_hash"] = options.study_hash;
   return report;
@@ -195,9 +187,14 @@ std::string statistics_table(const json& report, const ReportOptions& options,
   const json& part = report.at("included_sets").at(set);
   std::string text;
   for (const json& scene : part["scenes"]) {
-    text += one_table(scene, scene["scene"].get<std::string>(), options) + "\n";
+    text += one_table(scene, titled(scene["scene"], scene), options) + "\n";
   }
-  return text + one_table(part["overall"], "all scenes", options);
+  const json& twin = part["overall"]["pooled_rows"];
+  return text + one_table(part["overall"], titled("all scenes", part["overall"]), options) + "\n" +
+         one_table(twin,
+                   "all scenes, " + twin["rows"].dump() +
+                       " pages taken for people (unsound: for comparison with 2007 only)",
+                   options);
 }
 
 json screening_flags(const std::vector<ResponseRow>& rows, const Screening& screening) {

@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "study/responses.h"
+#include "study/statistics/bootstrap.h"
+#include "study/statistics/objective.h"
+#include "study/statistics/survey_data.h"
 #include "study/study.h"
 
 namespace penumbra::study {
@@ -15,6 +18,8 @@ struct ReportOptions {
   std::map<std::string, std::string> labels;  ///< abbreviation per picture id, for the text table
   std::string study_id;                       ///< put into the report where given
   std::string study_hash;
+  statistics::Resampling resampling;  ///< of bootstraps and permutations
+  Measures measures;                  ///< of the pictures that were shown; empty: not compared
 };
 
 /// Options of a study: its analysis plan, the labels of its pictures, its id and hash.
@@ -23,6 +28,7 @@ ReportOptions report_options(const Study& study);
 /// The document of `penumbra statistics --json` and results.json. Blocks are participants: the
 /// pooled part works on each participant's mean mid-ranks. Rows of repeated pages only measure
 /// reliability. What cannot be computed is null and a `reason` stands beside it.
+nlohmann::json statistics_report(const statistics::SurveyData& data, const ReportOptions& options);
 nlohmann::json statistics_report(const std::vector<ResponseRow>& rows,
                                  const ReportOptions& options);
 

@@ -37,8 +37,7 @@ struct Person {
   std::size_t negative = 0;  ///< of those, below 0
 };
 
-std::vector<Person> people_of(const SurveyData& data,
-                              const std::vector<std::optional<double>>& rho) {
+std::vector<Person> people_of(const SurveyData& data, const std::vector<Agreement>& agreement) {
   std::vector<Person> people(data.participants.size());
   for (std::size_t i = 0; i < data.pages.size(); ++i) {
     Person& person = people[data.pages[i].participant];
@@ -47,10 +46,11 @@ std::vector<Person> people_of(const SurveyData& data,
       continue;
     }
     person.pages.push_back(i);
-    if (!rho[i]) continue;
+    const auto& rho = agreement[i].rho;
+    if (!rho) continue;
     ++person.judged;
-    person.negative += *rho[i] < 0.0 ? 1 : 0;
-    person.mean_rho = person.mean_rho.value_or(0.0) + *rho[i];
+    person.negative += *rho < 0.0 ? 1 : 0;
+    person.mean_rho = person.mean_rho.value_or(0.0) + *rho;
   }
   for (Person& person : people) {
     if (person.mean_rho) *person.mean_rho /= static_cast<double>(person.judged);
@@ -62,7 +62,7 @@ std::string page_name(const SurveyData& data, std::size_t page) {
   return "page of " + data.scenes[data.pages[page].scene];
 }
 
-void flag_direction(const SurveyData& data, const std::vector<std::optional<double>>& rho,
+void flag_direction(const SurveyData& data, const std::vector<Agreement>& agreement,
                     const Person& person, std::size_t index, const Screening& thresholds,
                     std::vector<Flag>& flags) {
   if (!person.mean_rho) return;
@@ -79,10 +79,11 @@ void flag_direction(const SurveyData& data, const std::vector<std::optional<doub
     return;
   }
   for (const std::size_t page : person.pages) {
-    if (!rho[page] || person.judged < 2 || *rho[page] > thresholds.page_inverted_rho) continue;
-    const double others = (mean * judged - *rho[page]) / (judged - 1.0);
+    const auto& rho = agreement[page].rho;
+    if (!rho || person.judged < 2 || *rho > thresholds.page_inverted_rho) continue;
+    const double others = (mean * judged - *rho) / (judged - 1.0);
     if (others <= 0.0) continue;
-    flags.push_back({index, "page_inverted", *rho[page], thresholds.page_inverted_rho,
+    flags.push_back({index, "page_inverted", *rho, thresholds.page_inverted_rho,
                      page_name(data, page) + " runs against the others, the rest does not", page});
   }
   if (mean < thresholds.unreliable_rho) {
@@ -136,6 +137,22 @@ void flag_flat(const SurveyData& data, const Person& person, std::size_t index,
   }
 }
 
+/// Ranks that follow the slots over enough pictures to be no accident: one page of nine agrees by
+/// chance too often, six do not.
+void flag_position(const Position& position, std::size_t index, const Screening& thresholds,
+                   std::vector<Flag>& flags) {
+  constexpr double deviations = 3.3;  // two-sided p of 0.001
+  if (!position.mean_rho) return;
+  const double limit = std::max(thresholds.positional_rho, deviations * position.deviation);
+  if (std::abs(*position.mean_rho) < limit) return;
+  flags.push_back({index,
+                   "positional",
+                   *position.mean_rho,
+                   limit,
+                   "ranks follow the places on the screen",
+                   {}});
+}
+
 /// Active seconds per picture, where the page recorded them.
 std::optional<double> seconds_per_picture(const SurveyData& data, const Person& person) {
   double seconds = 0.0;
@@ -164,9 +181,9 @@ double slowest_fast(const std::vector<std::optional<double>>& paces, const Scree
 
 }  // namespace
 
-std::vector<std::optional<double>> leave_one_out_rho(const SurveyData& data) {
+std::vector<Agreement> leave_one_out(const SurveyData& data) {
   const Consensus all = consensus_of(data);
-  std::vector<std::optional<double>> rho(data.pages.size());
+  std::vector<Agreement> agreement(data.pages.size());
   for (std::size_t i = 0; i < data.pages.size(); ++i) {
     const PageAnswer& page = data.pages[i];
     if (page.repeat > 0) continue;
@@ -189,22 +206,45 @@ std::vector<std::optional<double>> leave_one_out_rho(const SurveyData& data) {
     for (std::size_t k = 0; k < sums.size(); ++k) {
       if (counts[k] >= 2.0) others[k] = sums[k] / counts[k];
     }
-    rho[i] = spearman(page.doubled_ranks, others);
+    agreement[i] = {spearman(page.doubled_ranks, others),
+                    kendall_tau_b(page.doubled_ranks, others)};
   }
-  return rho;
+  return agreement;
+}
+
+std::vector<Position> positions(const SurveyData& data) {
+  std::vector<Position> result(data.participants.size());
+  std::vector<double> pages(result.size(), 0.0);
+  for (const PageAnswer& page : data.pages) {
+    if (page.repeat > 0) continue;
+    const auto rho = spearman(page.doubled_ranks, page.slots);
+    if (!rho) continue;
+    Position& position = result[page.participant];
+    position.mean_rho = position.mean_rho.value_or(0.0) + *rho;
+    position.deviation += static_cast<double>(page.pictures) - 1.0;
+    pages[page.participant] += 1.0;
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (!result[i].mean_rho) continue;
+    *result[i].mean_rho /= pages[i];
+    result[i].deviation = 1.0 / std::sqrt(result[i].deviation);
+  }
+  return result;
 }
 
 std::vector<Flag> screen(const SurveyData& data, const Screening& thresholds) {
-  const auto rho = leave_one_out_rho(data);
-  const auto people = people_of(data, rho);
+  const auto agreement = leave_one_out(data);
+  const auto people = people_of(data, agreement);
+  const auto position = positions(data);
   std::vector<std::optional<double>> paces;
   for (const Person& person : people) paces.push_back(seconds_per_picture(data, person));
   const double pace_limit = slowest_fast(paces, thresholds);
   std::vector<Flag> flags;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    flag_direction(data, rho, people[i], i, thresholds, flags);
+    flag_direction(data, agreement, people[i], i, thresholds, flags);
     flag_repeats(data, people[i], i, thresholds, flags);
     flag_flat(data, people[i], i, thresholds, flags);
+    flag_position(position[i], i, thresholds, flags);
     if (paces[i] && *paces[i] < pace_limit) {
       flags.push_back({i, "fast", *paces[i], pace_limit, "active seconds per picture", {}});
     }

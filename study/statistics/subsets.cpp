@@ -78,6 +78,24 @@ std::string subset_letter(std::size_t index) {
   return "(" + std::to_string(index + 1) + ")";
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> neighbouring_runs(
+    const std::vector<std::vector<bool>>& different) {
+  std::vector<std::pair<std::size_t, std::size_t>> runs;
+  std::size_t end = 0;  // of the last run, one past its last member
+  for (std::size_t first = 0; first < different.size(); ++first) {
+    std::size_t next = first + 1;
+    while (next < different.size() &&
+           std::none_of(different[next].begin() + static_cast<long>(first),
+                        different[next].begin() + static_cast<long>(next),
+                        [](bool differs) { return differs; })) {
+      ++next;
+    }
+    if (next > end) runs.emplace_back(first, next - 1);
+    end = std::max(end, next);
+  }
+  return runs;
+}
+
 std::vector<std::string> compact_letters(const std::vector<Set>& subsets, std::size_t treatments) {
   std::vector<std::string> letters(treatments);
   for (std::size_t i = 0; i < subsets.size(); ++i) {

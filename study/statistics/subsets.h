@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::study::statistics {
@@ -15,6 +16,11 @@ std::vector<std::vector<std::size_t>> maximal_cliques(
 
 /// Letter of the i-th subset: "a" to "z", "A" to "Z", then (53), (54), ...
 std::string subset_letter(std::size_t index);
+
+/// Maximal runs of neighbours of which no two differ, first and last member: what his tables show.
+/// Where the tests contradict the order, a pair that does not differ shares no run.
+std::vector<std::pair<std::size_t, std::size_t>> neighbouring_runs(
+    const std::vector<std::vector<bool>>& different);
 
 /// Compact letters: treatments share a letter exactly where they share a subset.
 std::vector<std::string> compact_letters(const std::vector<std::vector<std::size_t>>& subsets,

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "study/responses.h"
@@ -37,6 +40,40 @@ struct SurveyData {
 /// order, so that dense places, competition ranks and mid-ranks all mean the same.
 SurveyData gather(const std::vector<ResponseRow>& rows);
 
+/// The same row by row: of each only what statistics need is kept.
+class Gatherer {
+ public:
+  void add(const ResponseRow& row);
+  SurveyData finish();
+
+ private:
+  struct Names {
+    std::unordered_map<std::string, std::uint32_t> numbers;
+    std::uint32_t number(const std::string& name);
+    /// Names in order, and for each number its place there.
+    std::pair<std::vector<std::string>, std::vector<std::size_t>> sorted() const;
+  };
+  struct Row {
+    std::uint32_t participant = 0;
+    std::uint32_t scene = 0;
+    std::uint32_t technique = 0;
+    int page_index = 0;
+    int repeat = 0;
+    double rank = 0.0;
+    double digit = missing;
+    double slot = missing;
+    double weight = missing;
+    double active_ms = missing;
+  };
+  static PageAnswer page_of(const Row* first, const Row* last, std::size_t techniques);
+
+  Names participants;
+  Names scenes;
+  Names techniques;
+  std::set<std::string> taken_out;
+  std::vector<Row> rows;
+};
+
 /// Which pages enter an analysis, and which of them are turned round.
 struct Selection {
   std::vector<bool> used;    ///< per page of the survey
@@ -50,16 +87,24 @@ struct ParticipantTable {
   std::vector<std::size_t> techniques;
   Table scaled_ranks;  ///< mean mid-rank times `scale`, an integer
   double scale = 2.0;
-  Table weighted_ranks;  ///< sum(w r) / sum(w) over the participant's pages
-  Table weights;         ///< sum(w), 0 where no page has a weight
-  Table digits;          ///< mean digit; empty unless every page was answered with digits
+  Table weighted_ranks;   ///< sum(w r) / sum(w) over the participant's pages
+  Table weights;          ///< sum(w), 0 where no page has a weight
+  Table digits;           ///< mean digit; empty unless every page was answered with digits
+  Table weighted_digits;  ///< sum(w d) / sum(w); empty as `digits`
   std::size_t pages = 0;
-  bool any_weight = false;   ///< else every page counts 1
-  bool single_pages = true;  ///< nobody has more than one page here
+  std::size_t tied = 0;     ///< pictures that share their rank with another, summed over pages
+  std::size_t ranked = 0;   ///< pictures, summed over pages
+  bool any_weight = false;  ///< otherwise every page counts 1
 };
+
+/// What a row of the table is. Pages as rows take a person's pages for so many people: tests on
+/// them reject too often (van Sambeek 2007, table 4.9), so that they only ever stand beside the
+/// others.
+enum class Blocks { participants, pages };
 
 /// Of one scene, or of all where `scene` is empty. Repeated showings are left out.
 ParticipantTable participant_table(const SurveyData& data, const Selection& selection,
-                                   std::optional<std::size_t> scene);
+                                   std::optional<std::size_t> scene,
+                                   Blocks blocks = Blocks::participants);
 
 }  // namespace penumbra::study::statistics

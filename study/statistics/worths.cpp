@@ -4,13 +4,15 @@
 #include <cmath>
 #include <map>
 
-#include "study/statistics/plackett_luce.h"
+#include "study/statistics/json.h"
 
 namespace penumbra::study::statistics {
 
 namespace {
 
 using nlohmann::json;
+
+constexpr double pseudo_rankings = 0.5;  ///< the default of the R package PlackettLuce
 
 /// The page's pictures by rank; `index` maps the survey's techniques to those fitted.
 Ranking ranking_of(const PageAnswer& page, bool turned,
@@ -39,26 +41,16 @@ json worth_json(const PlackettLuce& fit, const std::string& technique, std::size
       {"ci95", {fit.log_worths[i] - normal_975 * error, fit.log_worths[i] + normal_975 * error}}};
 }
 
-}  // namespace
-
-json worths_json(const SurveyData& data, const Selection& selection,
-                 std::optional<std::size_t> scene, const std::vector<std::string>& techniques) {
-  std::map<std::size_t, std::size_t> index;
-  for (std::size_t i = 0; i < techniques.size(); ++i) {
-    const auto at = std::lower_bound(data.techniques.begin(), data.techniques.end(), techniques[i]);
-    index[static_cast<std::size_t>(at - data.techniques.begin())] = i;
-  }
-  std::vector<Ranking> rankings;
-  for (std::size_t i = 0; i < data.pages.size(); ++i) {
-    const PageAnswer& page = data.pages[i];
-    if (!selection.used[i] || page.repeat > 0 || (scene && page.scene != *scene)) continue;
-    rankings.push_back(ranking_of(page, selection.turned[i], index));
-  }
-  const PlackettLuce fit = fit_plackett_luce(rankings, techniques.size());
+json fit_json(const PlackettLuce& fit, const std::vector<std::string>& techniques) {
   json result = {
       {"worths", json::array()}, {"tie_parameter", nullptr}, {"log_likelihood", nullptr}};
   if (!fit.reason.empty()) {
     result["reason"] = fit.reason;
+    for (const auto& group : fit.groups) {
+      json names = json::array();
+      for (const std::size_t item : group) names.push_back(techniques[item]);
+      result["groups"].push_back(names);
+    }
     return result;
   }
   for (std::size_t i = 0; i < techniques.size(); ++i) {
@@ -70,6 +62,72 @@ json worths_json(const SurveyData& data, const Selection& selection,
   }
   if (fit.log_ties.contains(2)) result["tie_parameter"] = std::exp(fit.log_ties.at(2));
   result["log_likelihood"] = fit.log_likelihood;
+  return result;
+}
+
+/// Bradley-Terry as a check: every pair on a page is one comparison, ties are half a win each. Its
+/// errors take comparisons of one page for independent, which they are not; only worths compare.
+json bradley_terry_json(const Table& wins, const std::vector<std::string>& techniques) {
+  std::vector<Ranking> comparisons;
+  for (std::size_t i = 0; i < wins.size(); ++i) {
+    for (std::size_t j = 0; j < wins.size(); ++j) {
+      if (wins[i][j] > 0.0) comparisons.push_back({{{i}, {j}}, wins[i][j], 0});
+    }
+  }
+  const PlackettLuce fit = fit_plackett_luce(comparisons, techniques.size());
+  json result = {{"worths", json::array()}};
+  if (!fit.reason.empty()) return with_reason(std::move(result), fit.reason);
+  for (std::size_t i = 0; i < techniques.size(); ++i) {
+    result["worths"].push_back({{"technique", techniques[i]}, {"log_worth", fit.log_worths[i]}});
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Ranking> rankings_of(const SurveyData& data, const Selection& selection,
+                                 std::optional<std::size_t> scene,
+                                 const std::vector<std::string>& techniques) {
+  std::map<std::size_t, std::size_t> index;
+  for (std::size_t i = 0; i < techniques.size(); ++i) {
+    const auto at = std::lower_bound(data.techniques.begin(), data.techniques.end(), techniques[i]);
+    index[static_cast<std::size_t>(at - data.techniques.begin())] = i;
+  }
+  std::vector<Ranking> rankings;
+  for (std::size_t i = 0; i < data.pages.size(); ++i) {
+    const PageAnswer& page = data.pages[i];
+    if (!selection.used[i] || page.repeat > 0 || (scene && page.scene != *scene)) continue;
+    rankings.push_back(ranking_of(page, selection.turned[i], index));
+  }
+  return rankings;
+}
+
+Table wins_of(const std::vector<Ranking>& rankings, std::size_t items) {
+  Table wins(items, std::vector<double>(items, 0.0));
+  for (const Ranking& ranking : rankings) {
+    for (std::size_t place = 0; place < ranking.places.size(); ++place) {
+      for (const std::size_t winner : ranking.places[place]) {
+        for (const std::size_t equal : ranking.places[place]) {
+          if (equal != winner) wins[winner][equal] += 0.5 * ranking.weight;
+        }
+        for (std::size_t later = place + 1; later < ranking.places.size(); ++later) {
+          for (const std::size_t loser : ranking.places[later])
+            wins[winner][loser] += ranking.weight;
+        }
+      }
+    }
+  }
+  return wins;
+}
+
+json worths_json(const SurveyData& data, const Selection& selection,
+                 std::optional<std::size_t> scene, const std::vector<std::string>& techniques) {
+  const auto rankings = rankings_of(data, selection, scene, techniques);
+  json result = fit_json(fit_plackett_luce(rankings, techniques.size()), techniques);
+  result["regularised"] =
+      fit_json(fit_plackett_luce(rankings, techniques.size(), pseudo_rankings), techniques);
+  result["regularised"]["pseudo_rankings"] = pseudo_rankings;
+  result["bradley_terry"] = bradley_terry_json(wins_of(rankings, techniques.size()), techniques);
   return result;
 }
 

@@ -236,6 +236,23 @@ TEST_F(ProgramTest, analyses_answers) {
   EXPECT_TRUE(std::filesystem::exists(path("results/results.json")));
 }
 
+TEST_F(ProgramTest, reads_what_spreadsheets_write_and_says_so) {
+  std::ofstream csv(path("r.csv"));
+  csv << "participant;scene;technique;rank_1_is_most_realistic;difficulty_1_hard_to_see_5_easy\n";
+  for (int person = 0; person < 4; ++person)
+    csv << person << ";s;PCF 3\xC3\x97"
+        << "3;1,5;3\n"
+        << person << ";s;weich;1,5;3\n";
+  csv.close();
+  const Outcome found = run("statistics r.csv --json");
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(json::parse(found.out).at("notes").dump(), HasSubstr("semicolons"));
+  EXPECT_EQ(run("statistics r.csv --separator semicolon").status, 0);
+  const Outcome wrong = run("statistics r.csv --separator tab");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("separated by tabs it holds `participant;scene;technique"));
+}
+
 TEST_F(ProgramTest, finds_this_machine_able_to_work) {
   const Outcome outcome = run("doctor --json");
   EXPECT_EQ(outcome.status, 0) << outcome.out;

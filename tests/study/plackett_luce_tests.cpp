@@ -57,6 +57,51 @@ TEST(PlackettLuceFit, TiesPartialRankingsAndMissingTieOrdersAreThoseOfThePackage
   }
 }
 
+TEST(PlackettLuceFit, ImaginaryComparisonsRegulariseAsInThePackage) {
+  for (const char* id : {"pl_fruits3", "pl_fruits4"}) {
+    SCOPED_TRACE(id);
+    const json file = golden(id);
+    const auto items = file["data"]["columns"].size();
+    expect_fit(fit_plackett_luce(from_table(file["data"]["positions"]), items, 0.5),
+               file["expected"]["npseudo_0.5"]);
+  }
+  const json survey = golden("survey_complete");
+  expect_fit(fit_plackett_luce(from_table(survey["data"]["position"]), 9, 0.5),
+             survey["expected"]["pl_npseudo_0.5"]);
+}
+
+TEST(PlackettLuceFit, ASeasonOfNascarIsThatOfHunter) {
+  const json file = golden("pl_nascar_hunter");
+  const std::vector<std::string> drivers = file["data"]["drivers"];
+  std::vector<Ranking> races;
+  for (const json& order : file["data"]["races_best_first_from_one"]) {
+    Ranking race;
+    for (const json& driver : order) {
+      // Four more drivers always came last; they have no finite worth.
+      if (driver.get<std::size_t>() <= drivers.size()) {
+        race.places.push_back({driver.get<std::size_t>() - 1});
+      }
+    }
+    races.push_back(race);
+  }
+  const json& expected = file["expected"];
+  ASSERT_EQ(drivers.size(), expected["n_items"].get<std::size_t>());
+  const auto fit = fit_plackett_luce(races, drivers.size());
+  ASSERT_EQ(fit.reason, "");
+  for (const auto& [driver, worth] : expected["log_worth_ref_first"].items()) {
+    const auto at = static_cast<std::size_t>(std::find(drivers.begin(), drivers.end(), driver) -
+                                             drivers.begin());
+    EXPECT_NEAR(fit.log_worths.at(at) - fit.log_worths[0], worth.get<double>(), 1e-5) << driver;
+  }
+  EXPECT_NEAR(fit.log_likelihood, expected["loglik"].get<double>(), 1e-6);
+}
+
+TEST(PlackettLuceFit, GroupsThatWereNeverComparedAreNamed) {
+  const auto fit = fit_plackett_luce(from_table(json::parse("[[1,2,0,0],[0,0,1,2],[2,1,0,0]]")), 4);
+  EXPECT_EQ(fit.reason, "not connected: some techniques were never compared");
+  EXPECT_EQ(fit.groups, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}}));
+}
+
 TEST(PlackettLuceFit, DavidsonsPuddingsConverge) {
   const json file = golden("pl_pudding_davidson");
   std::vector<Ranking> rankings;

@@ -5,23 +5,13 @@
 #include <algorithm>
 
 #include "golden.h"
+#include "survey_rows.h"
 
 namespace penumbra::study {
 namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-ResponseRow row_of(const std::string& participant, const std::string& scene,
-                   const std::string& technique, double rank, std::optional<int> difficulty = 3) {
-  ResponseRow row;
-  row.participant = participant;
-  row.scene = scene;
-  row.technique = technique;
-  row.rank = rank;
-  row.difficulty = difficulty;
-  return row;
-}
 
 /// Rows of the synthetic survey, with the places as they were given (1, 2, 2, 3).
 std::vector<ResponseRow> survey_rows() {

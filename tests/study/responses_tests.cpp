@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "study/csv.h"
 #include "study_file.h"
 
@@ -55,6 +57,30 @@ TEST(Responses, FaultsAreNamedByLineAndColumn) {
   EXPECT_THAT(complaint(least_header + "\"P1,car,a,1,3\n"), HasSubstr("line 2: a quote never"));
   EXPECT_THAT(complaint(least_header + "P\xff,car,a,1,3\n"), HasSubstr("line 2: not UTF-8"));
   EXPECT_THAT(complaint(least_header + "\"P\"1,car,a,1,3\n"), HasSubstr("line 2"));
+}
+
+/// The same answers as a spreadsheet of a country with decimal commas saves them.
+TEST(Responses, SemicolonsTabsAndDecimalCommasOfSpreadsheetsAreRead) {
+  const std::string commas =
+      least_header + "P1,\"car, red\",a,1.5,4\nP1,\"car, red\",b,1.5,4\nP1,\"car, red\",c,3,\n";
+  const auto expected = parse_responses(commas);
+  for (const char separator : {';', '\t'}) {
+    std::string text =
+        least_header + "P1,car| red,a,1|5,4\nP1,car| red,b,1|5,4\nP1,car| red,c,3,\n";
+    std::replace(text.begin(), text.end(), ',', separator);
+    std::replace(text.begin(), text.end(), '|', ',');
+    for (const auto given : {std::optional<char>(), std::optional<char>(separator)}) {
+      std::vector<ResponseRow> rows;
+      const auto format = each_response(
+          text, [&](const ResponseRow& row) { rows.push_back(row); }, given);
+      EXPECT_EQ(format.separator, separator);
+      ASSERT_EQ(rows.size(), 3u);
+      EXPECT_EQ(write_responses(rows), write_responses(expected));
+    }
+  }
+  EXPECT_THAT(complaint("participant;scene;technique\nP1;car;a\n"),
+              HasSubstr("it holds `participant;scene;technique`"));
+  EXPECT_THAT(complaint(least_header + "P1,car,a,\"1,5\",3\n"), HasSubstr("found `1,5`"));
 }
 
 TEST(Responses, CellsThatASpreadsheetWouldRunAreNeutralised) {
