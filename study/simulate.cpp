@@ -47,29 +47,6 @@ void find_choices(const std::vector<std::size_t>& left, const std::vector<double
   }
 }
 
-/// Shelf of each picture, 0 first chosen.
-std::vector<int> draw_shelves(const std::vector<double>& log_worths, const Preferences& preferences,
-                              Random& random) {
-  std::vector<int> shelves(log_worths.size(), 0);
-  std::vector<std::size_t> left(log_worths.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  std::vector<Choice> list;
-  for (int shelf = 0; !left.empty(); ++shelf) {
-    find_choices(left, log_worths, preferences, list);
-    double total = 0.0;
-    for (const Choice& choice : list) total += choice.odds;
-    double at = random.uniform() * total;
-    std::size_t chosen = 0;
-    while (chosen + 1 < list.size() && at >= list[chosen].odds) at -= list[chosen++].odds;
-    for (std::size_t i = 0; i < list[chosen].count; ++i) {
-      const std::size_t picture = list[chosen].pictures[i];
-      shelves[picture] = shelf;
-      left.erase(std::find(left.begin(), left.end(), picture));
-    }
-  }
-  return shelves;
-}
-
 /// A version 4 UUID.
 std::string draw_uuid(Random& random) {
   std::string text;
@@ -101,6 +78,28 @@ std::vector<double> worths_of(const Page& page, const PlannedPage& planned,
 }
 
 }  // namespace
+
+std::vector<int> draw_shelves(const std::vector<double>& log_worths, const Preferences& preferences,
+                              Random& random) {
+  std::vector<int> shelves(log_worths.size(), 0);
+  std::vector<std::size_t> left(log_worths.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::vector<Choice> list;
+  for (int shelf = 0; !left.empty(); ++shelf) {
+    find_choices(left, log_worths, preferences, list);
+    double total = 0.0;
+    for (const Choice& choice : list) total += choice.odds;
+    double at = random.uniform() * total;
+    std::size_t chosen = 0;
+    while (chosen + 1 < list.size() && at >= list[chosen].odds) at -= list[chosen++].odds;
+    for (std::size_t i = 0; i < list[chosen].count; ++i) {
+      const std::size_t picture = list[chosen].pictures[i];
+      shelves[picture] = shelf;
+      left.erase(std::find(left.begin(), left.end(), picture));
+    }
+  }
+  return shelves;
+}
 
 Preferences default_preferences(const Study& study, double step) {
   Preferences preferences;

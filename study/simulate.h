@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "study/enrolment.h"
+#include "study/random.h"
 #include "study/responses.h"
 #include "study/study.h"
 
@@ -26,6 +27,10 @@ struct Preferences {
 /// Preferences in the order of the study's pictures on its first page: the first has the lowest
 /// worth and log worths step by `step`.
 Preferences default_preferences(const Study& study, double step = 0.5);
+
+/// One page of such a person: the shelf of each picture, 0 first chosen.
+std::vector<int> draw_shelves(const std::vector<double>& log_worths, const Preferences& preferences,
+                              Random& random);
 
 struct SimulatedPerson {
   PersonKind kind = PersonKind::honest;

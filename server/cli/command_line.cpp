@@ -61,6 +61,7 @@ int run(int argc, const char* const* argv) {
   add_catalogue_commands(app, session);
   add_scene_commands(app, session);
   add_statistics_command(app, session);
+  add_power_command(app, session);
   add_simulate_command(app, session);
   add_doctor_command(app, session);
   add_demo_command(app, session);

@@ -28,6 +28,7 @@ void add_compare_command(CLI::App& app, Session& session);     // compare
 void add_catalogue_commands(CLI::App& app, Session& session);  // scenes, techniques
 void add_scene_commands(CLI::App& app, Session& session);      // import, export-scene
 void add_statistics_command(CLI::App& app, Session& session);  // statistics
+void add_power_command(CLI::App& app, Session& session);       // power
 void add_simulate_command(CLI::App& app, Session& session);    // simulate-study
 void add_doctor_command(CLI::App& app, Session& session);      // doctor
 void add_demo_command(CLI::App& app, Session& session);        // demo

@@ -47,7 +47,7 @@ int analyse(const Session& session, const Options& given) {
   study::statistics::Gatherer gatherer;
   const auto format = study::each_response(
       text, [&](const study::ResponseRow& row) { gatherer.add(row); }, separator);
-  nlohmann::json report = study::statistics_report(gatherer.finish(), options);
+  nlohmann::json report = study::survey_report(gatherer.finish(), options);
   if (format.separator != ',') {
     report["notes"].push_back("cells were read as separated by " +
                               study::separator_name(format.separator) +

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 namespace penumbra::study::statistics {
@@ -17,28 +18,69 @@ constexpr int most_steps = 100;
 constexpr double most_log = 40.0;      ///< a log worth beyond this runs off to infinity,
 constexpr double most_variance = 1e6;  ///< and so does one that is as little known as this
 
-/// One choice: `chosen` took the next place from `left`.
+/// One choice: `chosen` took the next place from `left`, both by number.
 struct Stage {
-  Set left;
-  Set chosen;
+  std::uint32_t left = 0;
+  std::uint32_t chosen = 0;
   double weight = 1.0;
   std::size_t cluster = 0;
 };
 
+/// Sets by number: few are different, however many rankings there are.
+class Sets {
+ public:
+  std::uint32_t number(const Set& set) {
+    const auto [found, is_new] = numbers.try_emplace(set, static_cast<std::uint32_t>(list.size()));
+    if (is_new) list.push_back(set);
+    return found->second;
+  }
+  const Set& operator[](std::uint32_t number) const { return list[number]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(list.size()); }
+
+ private:
+  std::map<Set, std::uint32_t> numbers;
+  std::vector<Set> list;
+};
+
 /// Choices with more than one item left; the last one left takes the last place for certain.
-std::vector<Stage> stages_of(const std::vector<Ranking>& rankings) {
+struct Choices {
+  Sets rests;
+  Sets chosen;
   std::vector<Stage> stages;
-  for (const Ranking& ranking : rankings) {
-    Set left;
-    for (const Set& place : ranking.places) left.insert(left.end(), place.begin(), place.end());
-    std::sort(left.begin(), left.end());
-    for (const Set& place : ranking.places) {
-      if (left.size() < 2) break;
-      stages.push_back({left, place, ranking.weight, ranking.cluster});
-      for (const std::size_t item : place) left.erase(std::find(left.begin(), left.end(), item));
+
+  explicit Choices(const std::vector<Ranking>& rankings) {
+    for (const Ranking& ranking : rankings) {
+      Set left;
+      for (const Set& place : ranking.places) left.insert(left.end(), place.begin(), place.end());
+      std::sort(left.begin(), left.end());
+      for (const Set& place : ranking.places) {
+        if (left.size() < 2) break;
+        stages.push_back(
+            {rests.number(left), chosen.number(place), ranking.weight, ranking.cluster});
+        for (const std::size_t item : place) left.erase(std::find(left.begin(), left.end(), item));
+      }
     }
   }
-  return stages;
+};
+
+/// Groups of items that comparisons hold together, whoever won; one group where all are held.
+std::vector<Set> connected_groups(const Choices& choices, std::size_t items) {
+  Set group(items);
+  for (std::size_t i = 0; i < items; ++i) group[i] = i;
+  const auto root = [&](std::size_t item) {
+    while (group[item] != item) item = group[item] = group[group[item]];
+    return item;
+  };
+  for (std::uint32_t i = 0; i < choices.rests.size(); ++i) {
+    const Set& rest = choices.rests[i];
+    for (const std::size_t item : rest) group[root(item)] = root(rest.front());
+  }
+  std::map<std::size_t, Set> members;
+  for (std::size_t i = 0; i < items; ++i) members[root(i)].push_back(i);
+  std::vector<Set> groups;
+  for (auto& [first, set] : members) groups.push_back(std::move(set));
+  std::sort(groups.begin(), groups.end());
+  return groups;
 }
 
 /// Whether every item can be reached from the first, along `edges` or against them.
@@ -58,31 +100,12 @@ bool all_reached(const std::vector<std::vector<bool>>& edges, bool along) {
   return std::find(reached.begin(), reached.end(), false) == reached.end();
 }
 
-/// Groups of items that comparisons hold together, whoever won; one group where all are held.
-std::vector<Set> connected_groups(const std::vector<Stage>& stages, std::size_t items) {
-  Set group(items);
-  for (std::size_t i = 0; i < items; ++i) group[i] = i;
-  const auto root = [&](std::size_t item) {
-    while (group[item] != item) item = group[item] = group[group[item]];
-    return item;
-  };
-  for (const Stage& stage : stages) {
-    for (const std::size_t item : stage.left) group[root(item)] = root(stage.left.front());
-  }
-  std::map<std::size_t, Set> members;
-  for (std::size_t i = 0; i < items; ++i) members[root(i)].push_back(i);
-  std::vector<Set> groups;
-  for (auto& [first, set] : members) groups.push_back(std::move(set));
-  std::sort(groups.begin(), groups.end());
-  return groups;
-}
-
 /// An edge leads from an item to those it was placed before or beside.
-bool strongly_connected(const std::vector<Stage>& stages, std::size_t items) {
+bool strongly_connected(const Choices& choices, std::size_t items) {
   std::vector<std::vector<bool>> edges(items, std::vector<bool>(items, false));
-  for (const Stage& stage : stages) {
-    for (const std::size_t winner : stage.chosen) {
-      for (const std::size_t other : stage.left) edges[winner][other] = true;
+  for (const Stage& stage : choices.stages) {
+    for (const std::size_t winner : choices.chosen[stage.chosen]) {
+      for (const std::size_t other : choices.rests[stage.left]) edges[winner][other] = true;
     }
   }
   return all_reached(edges, true) && all_reached(edges, false);
@@ -92,32 +115,36 @@ bool strongly_connected(const std::vector<Stage>& stages, std::size_t items) {
 /// and the log prevalence of each tie order that occurs.
 class Model {
  public:
-  Model(std::vector<Stage> stages_, std::size_t items_)
-      : stages(std::move(stages_)), items(items_) {
-    for (const Stage& stage : stages) {
-      if (stage.chosen.size() > 1) orders.insert(stage.chosen.size());
+  Model(const Choices& choices_, std::size_t items_) : choices(choices_), items(items_) {
+    for (std::uint32_t i = 0; i < choices.chosen.size(); ++i) {
+      if (choices.chosen[i].size() > 1) orders.insert(choices.chosen[i].size());
     }
     std::size_t sets = 0;
-    for (const Stage& stage : stages) {
-      rest_weights[stage.left] += stage.weight;
-      if (rests.contains(stage.left)) continue;
+    for (std::uint32_t i = 0; i < choices.rests.size(); ++i) {
+      const Set& left = choices.rests[i];
       std::vector<Eigen::VectorXd> list;
-      add_subsets(stage.left, 1, list);
+      add_subsets(left, 1, list);
       for (const std::size_t order : orders) {
         if (too_many) break;
-        add_subsets(stage.left, order, list);
+        add_subsets(left, order, list);
       }
       sets += list.size();
       too_many = too_many || sets > most_sets;
       if (too_many) return;
-      Eigen::MatrixXd& columns = rests[stage.left];
-      columns.resize(size(), static_cast<Eigen::Index>(list.size()));
-      for (std::size_t i = 0; i < list.size(); ++i) {
-        columns.col(static_cast<Eigen::Index>(i)) = list[i];
+      Eigen::MatrixXd& columns = rests.emplace_back(size(), static_cast<Eigen::Index>(list.size()));
+      for (std::size_t j = 0; j < list.size(); ++j) {
+        columns.col(static_cast<Eigen::Index>(j)) = list[j];
       }
     }
+    for (std::uint32_t i = 0; i < choices.chosen.size(); ++i) {
+      chosen.push_back(features(choices.chosen[i]));
+    }
+    rest_weights.assign(rests.size(), 0.0);
     observed = Eigen::VectorXd::Zero(size());
-    for (const Stage& stage : stages) observed += stage.weight * features(stage.chosen);
+    for (const Stage& stage : choices.stages) {
+      rest_weights[stage.left] += stage.weight;
+      observed += stage.weight * chosen[stage.chosen];
+    }
   }
 
   bool overflows() const { return too_many; }
@@ -132,9 +159,9 @@ class Model {
 
   Value evaluate(const Eigen::VectorXd& parameters) const {
     Value value{observed.dot(parameters), observed, Eigen::MatrixXd::Zero(size(), size())};
-    for (const auto& [left, sets] : rests) {
-      const Moments rest = moments_of(sets, parameters);
-      const double weight = rest_weights.at(left);
+    for (std::size_t i = 0; i < rests.size(); ++i) {
+      const Moments rest = moments_of(rests[i], parameters);
+      const double weight = rest_weights[i];
       value.log_likelihood -= weight * rest.log_total;
       value.gradient -= weight * rest.mean;
       value.information += weight * rest.covariance;
@@ -145,11 +172,11 @@ class Model {
   /// Sum over clusters of score times score transposed: the filling of the sandwich.
   Eigen::MatrixXd clustered_scores(const Eigen::VectorXd& parameters) const {
     std::map<std::size_t, Eigen::VectorXd> scores;
-    std::map<Set, Eigen::VectorXd> means;
-    for (const auto& [left, sets] : rests) means[left] = moments_of(sets, parameters).mean;
-    for (const Stage& stage : stages) {
+    std::vector<Eigen::VectorXd> means;
+    for (const Eigen::MatrixXd& sets : rests) means.push_back(moments_of(sets, parameters).mean);
+    for (const Stage& stage : choices.stages) {
       auto& score = scores.try_emplace(stage.cluster, Eigen::VectorXd::Zero(size())).first->second;
-      score += stage.weight * (features(stage.chosen) - means.at(stage.left));
+      score += stage.weight * (chosen[stage.chosen] - means[stage.left]);
     }
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size());
     for (const auto& [cluster, score] : scores) sum += score * score.transpose();
@@ -203,12 +230,13 @@ class Model {
     return {log_total, mean, scaled * scaled.transpose() - mean * mean.transpose()};
   }
 
-  std::vector<Stage> stages;
+  const Choices& choices;
   std::size_t items;
   std::set<std::size_t> orders;
-  std::map<Set, Eigen::MatrixXd> rests;  ///< a column of features per set that may be chosen
-  std::map<Set, double> rest_weights;
-  Eigen::VectorXd observed;  ///< sum of the features of what was chosen
+  std::vector<Eigen::MatrixXd> rests;  ///< by rest, a column of features per set that may be chosen
+  std::vector<double> rest_weights;
+  std::vector<Eigen::VectorXd> chosen;  ///< features of the sets that were
+  Eigen::VectorXd observed;             ///< sum of the features of what was chosen
   bool too_many = false;
 };
 
@@ -248,7 +276,8 @@ bool maximise_with_pseudo(std::vector<Ranking> rankings, std::size_t items, doub
     rankings.push_back({{{i}, {items}}, pseudo_rankings, 0});
     rankings.push_back({{{items}, {i}}, pseudo_rankings, 0});
   }
-  const Model model(stages_of(rankings), items + 1);
+  const Choices choices(rankings);
+  const Model model(choices, items + 1);
   Eigen::VectorXd all;
   if (model.overflows() || !maximise(model, all)) return false;
   const auto n = static_cast<Eigen::Index>(items);
@@ -277,18 +306,18 @@ PlackettLuce without_fit(const std::string& reason) {
 PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items,
                                double pseudo_rankings) {
   if (items < 2) return without_fit("fewer than two techniques");
-  const auto stages = stages_of(rankings);
-  const auto groups = connected_groups(stages, items);
+  const Choices choices(rankings);
+  const auto groups = connected_groups(choices, items);
   if (groups.size() > 1) {
-    PlackettLuce result = without_fit("not connected: some techniques were never compared");
+    PlackettLuce result = without_fit(not_connected);
     result.groups = groups;
     return result;
   }
   const bool regularised = pseudo_rankings > 0.0;
-  if (!regularised && !strongly_connected(stages, items)) {
+  if (!regularised && !strongly_connected(choices, items)) {
     return without_fit("some techniques beat all others every time: worths are unbounded");
   }
-  const Model model(stages, items);
+  const Model model(choices, items);
   if (model.overflows()) return without_fit("too many sets of techniques could tie");
   Eigen::VectorXd parameters;
   const bool found = regularised
@@ -322,6 +351,11 @@ PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t
   }
   result.log_likelihood = value.log_likelihood;
   return result;
+}
+
+Comparability comparability(const std::vector<Ranking>& rankings, std::size_t items) {
+  const Choices choices(rankings);
+  return {connected_groups(choices, items), strongly_connected(choices, items)};
 }
 
 std::vector<double> quasi_errors(const Matrix& covariance) {

@@ -42,6 +42,15 @@ struct PlackettLuce {
 PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t items,
                                double pseudo_rankings = 0.0);
 
+/// Reason of items that fall into groups without a comparison between them.
+inline constexpr const char* not_connected = "not connected: some techniques were never compared";
+
+struct Comparability {
+  std::vector<std::vector<std::size_t>> groups;  ///< held together by comparisons, whoever won
+  bool bounded = false;                          ///< no set of items beats all others every time
+};
+Comparability comparability(const std::vector<Ranking>& rankings, std::size_t items);
+
 /// q_i with q_i^2 + q_j^2 close to the variance of every difference i - j (Firth 2000): least
 /// squares of log variances. Empty below three items.
 std::vector<double> quasi_errors(const std::vector<std::vector<double>>& covariance);

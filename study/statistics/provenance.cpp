@@ -123,6 +123,9 @@ json methods_json(const ReportOptions& options) {
        "robust_se clustered by participant, quasi_se; regularised: each technique wins and loses "
        "half a comparison with an imaginary one"},
       {"bradley_terry", "a tie is half a win; a check of the worths, without errors"},
+      {"jod",
+       "Thurstone's case V with the distance prior of Perez-Ortiz and Mantiuk 2017; ties are half "
+       "wins; robust_se clustered by participant, from the likelihood without the prior"},
       {"bt500",
        "ITU-R BT.500-13, annex 2, 2.3.1; for comparison only: in small groups people who read the "
        "scale backwards widen its limits and pass"},

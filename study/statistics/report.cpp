@@ -7,6 +7,7 @@
 
 #include "study/statistics/analysis.h"
 #include "study/statistics/histograms.h"
+#include "study/statistics/jod.h"
 #include "study/statistics/provenance.h"
 #include "study/statistics/raters.h"
 #include "study/statistics/screening.h"
@@ -68,7 +69,9 @@ json analyse_part(const SurveyData& data, const Selection& selection,
   part["critical_difference"] = statistics::critical_difference(data, table, settings.alpha);
   std::vector<std::string> techniques;
   for (const json& row : part["techniques"]) techniques.push_back(row["technique"]);
-  part["plackett_luce"] = statistics::worths_json(data, selection, scene, techniques);
+  const auto rankings = statistics::rankings_of(data, selection, scene, techniques);
+  part["plackett_luce"] = statistics::worths_json(rankings, techniques);
+  part["jod"] = statistics::jod_json(rankings, techniques);
   return part;
 }
 
@@ -159,10 +162,10 @@ ReportOptions report_options(const Study& study) {
 }
 
 json statistics_report(const std::vector<ResponseRow>& rows, const ReportOptions& options) {
-  return statistics_report(statistics::gather(rows), options);
+  return survey_report(statistics::gather(rows), options);
 }
 
-json statistics_report(const SurveyData& data, const ReportOptions& options) {
+json survey_report(const SurveyData& data, const ReportOptions& options) {
   const auto flags = statistics::screen(data, options.plan.screening);
   json report = {{"participants", data.participants.size()},
                  {"pages", data.pages.size()},

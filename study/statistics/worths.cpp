@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double pseudo_rankings = 0.5;  ///< the default of the R package PlackettLuce
-
 /// The page's pictures by rank; `index` maps the survey's techniques to those fitted.
 Ranking ranking_of(const PageAnswer& page, bool turned,
                    const std::map<std::size_t, std::size_t>& index) {
@@ -120,9 +118,7 @@ Table wins_of(const std::vector<Ranking>& rankings, std::size_t items) {
   return wins;
 }
 
-json worths_json(const SurveyData& data, const Selection& selection,
-                 std::optional<std::size_t> scene, const std::vector<std::string>& techniques) {
-  const auto rankings = rankings_of(data, selection, scene, techniques);
+json worths_json(const std::vector<Ranking>& rankings, const std::vector<std::string>& techniques) {
   json result = fit_json(fit_plackett_luce(rankings, techniques.size()), techniques);
   result["regularised"] =
       fit_json(fit_plackett_luce(rankings, techniques.size(), pseudo_rankings), techniques);

@@ -93,7 +93,9 @@ TEST(PublishedTables, put_hard_shadows_last_in_five_scenes) {
   for (std::size_t i = 0; i < 6; ++i) {
     const std::string& last = published::ranking_tables[i].rows.back().technique;
     hard += last == "shadow-map" || last == "shadow-volumes" ? 1 : 0;
-    if (i == 5) EXPECT_EQ(last, "pcf-3x3");
+    if (i == 5) {
+      EXPECT_EQ(last, "pcf-3x3");
+    }
   }
   EXPECT_EQ(hard, 5);
 }
