@@ -129,6 +129,14 @@ struct DeviceInfo {
   std::uint32_t index = 0;
 };
 
+/// What a device can hold, bytes unless said otherwise.
+struct DeviceLimits {
+  std::uint64_t memory = 0;          ///< in all
+  std::uint64_t light = 0;           ///< of what is allocated for one light: a heap of the device
+  std::uint64_t storage_buffer = 0;  ///< one of them
+  std::uint32_t image_extent = 0;    ///< texels along an edge
+};
+
 /// All Vulkan devices of this machine, in the loader's order.
 std::vector<DeviceInfo> list_devices();
 
@@ -161,6 +169,7 @@ class Renderer {
   RenderResult render(const RenderRequest& request, const RenderControl& control = {});
 
   const DeviceInfo& device() const;
+  DeviceLimits limits() const;
 
   struct State;  ///< the implementation's own
 

@@ -46,8 +46,17 @@ enum class CasterUse {
 /// Filters of a spot light's map read no further than this many times the cone's width.
 constexpr double widest_filtered_cone = 2.0;
 
+/// Something that a technique allocates for a light and whose size follows from parameters.
+struct MemoryNeed {
+  std::string name;          ///< as in the memory report
+  std::uint64_t bytes = 0;   ///< at least
+  std::uint32_t extent = 0;  ///< texels along an edge of an image; 0: a storage buffer
+};
+
 /// What a technique needs for one light; the plan allocates this and nothing else.
 struct Requirements {
+  std::vector<MemoryNeed>
+      memory;  ///< what may be too large for a device; nothing of the frame's size
   CasterUse casters = CasterUse::cone;
   bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
   bool adjacency = false;               ///< index buffer of triangles with adjacency

@@ -8,6 +8,7 @@
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/scene_pass.h"
 #include "renderer/reference/intersector.h"
+#include "renderer/scene/memory_check.h"
 
 namespace penumbra {
 namespace {
@@ -25,6 +26,11 @@ FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
           samples_per_side(request.supersampling),
           window,
           parameter_declarations(request.technique->parameters, parameters)};
+}
+
+Plan checked(Plan plan, const DeviceLimits& limits) {
+  check_memory(plan, limits);
+  return plan;
 }
 
 CameraMatrices whole_camera(const FrameSetup& setup) {
@@ -59,7 +65,8 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
                    const ParameterValues& parameters, const Window& window, bool in_rounds)
     : state_(state),
       request_(request),
-      plan_(make_plan(request, parameters, state.boxes_of(request.scene))),
+      plan_(checked(make_plan(request, parameters, state.boxes_of(request.scene)),
+                    state.device.limits())),
       setup_(make_setup(state, request, parameters, plan_, window)),
       camera_(whole_camera(setup_)),
       lights_(make_lights(setup_, plan_)),

@@ -51,6 +51,10 @@ const DeviceInfo& Renderer::device() const {
   return state->device.info;
 }
 
+DeviceLimits Renderer::limits() const {
+  return state->device.limits();
+}
+
 RenderResult Renderer::render(const RenderRequest& request, const RenderControl& control) {
   check_request(request);
   validate(*request.scene);

@@ -153,12 +153,7 @@ class Planner {
           const std::vector<Bounds>& boxes)
       : request_(request), scene_(*request.scene), boxes_(boxes) {
     camera_ = &scene_.cameras[find_camera(scene_, request.camera)];
-    for (const Light& light : scene_.lights) {
-      Requirements needs;
-      request.technique->create()->require(technique_input(request, light, *camera_, parameters),
-                                           needs);
-      plan_.needs.push_back(needs);
-    }
+    plan_.needs = requirements_of(request, parameters);
   }
 
   Plan make() {
@@ -335,6 +330,19 @@ class Planner {
 };
 
 }  // namespace
+
+std::vector<Requirements> requirements_of(const RenderRequest& request,
+                                          const ParameterValues& parameters) {
+  const Scene& scene = *request.scene;
+  const Camera& camera = scene.cameras[find_camera(scene, request.camera)];
+  std::vector<Requirements> list;
+  for (const Light& light : scene.lights) {
+    list.emplace_back();
+    request.technique->create()->require(technique_input(request, light, camera, parameters),
+                                         list.back());
+  }
+  return list;
+}
 
 std::vector<Bounds> instance_boxes(const Scene& scene) {
   std::vector<Bounds> boxes;

@@ -46,6 +46,10 @@ struct Plan {
 /// Boxes of all instances, world space, in order; padded for the rounding of single precision.
 std::vector<Bounds> instance_boxes(const Scene& scene);
 
+/// What the technique of a request requires of each light. Passes on its `unsupported`.
+std::vector<Requirements> requirements_of(const RenderRequest& request,
+                                          const ParameterValues& parameters);
+
 /// The plan of a request. `parameters` are complete. Asks the technique what each light requires
 /// and passes on its `unsupported`.
 Plan make_plan(const RenderRequest& request, const ParameterValues& parameters,

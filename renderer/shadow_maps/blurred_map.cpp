@@ -87,10 +87,28 @@ Diagnostic mip_level_diagnostic() {
   return {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."};
 }
 
+namespace {
+
+bool has_mips(const BlurSettings& settings, const ParameterValues& parameters) {
+  return settings.filter == MapFilter::mean && boolean_of(parameters, "mips");
+}
+
+}  // namespace
+
+void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settings,
+                         Requirements& needs) {
+  const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
+  const std::uint64_t bytes =
+      std::uint64_t{size} * size * face_count(input.light) * vulkan::texel_bytes(settings.format);
+  needs.memory.push_back({settings.name + " rows", bytes, size});
+  // A chain of halves adds a third.
+  const std::uint64_t chain = has_mips(settings, input.parameters) ? bytes / 3 : 0;
+  needs.memory.push_back({settings.name, bytes + chain, size});
+}
+
 void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,
                       const BlurSettings& settings) {
-  const bool mips =
-      settings.filter == MapFilter::mean && boolean_of(context.input.parameters, "mips");
+  const bool mips = has_mips(settings, context.input.parameters);
   sampling_ = settings.filter != MapFilter::mean ? vulkan::Sampling::nearest
               : mips                             ? vulkan::Sampling::linear_mipmapped
                                                  : vulkan::Sampling::linear;

@@ -39,6 +39,10 @@ struct BlurSettings {
 /// Same faces as the depth map, one layer each, with a mip chain where parameter mips asks for one.
 class BlurredMap {
  public:
+  /// What it allocates beside the depth map.
+  static void require(const TechniqueInput& input, const BlurSettings& settings,
+                      Requirements& needs);
+
   /// Two passes, "encode and blur" along rows and "blur" along columns, then "mips".
   void draw(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings);
 

@@ -131,6 +131,9 @@ Diagnostic map_diagnostic() {
 namespace {
 
 /// Strategies that ask for the surface behind the first.
+/// Of the two surfaces that some bias strategies tell apart.
+constexpr VkFormat layer_format = VK_FORMAT_D32_SFLOAT;
+
 bool knows_two_surfaces(const ParameterValues& parameters) {
   const std::string& strategy = choice_of(parameters, "bias_strategy");
   return strategy == "second-depth" || strategy == "midpoint" || strategy == "dual-depth" ||
@@ -174,6 +177,16 @@ void set_range(LightView& view, const ParameterValues& parameters) {
 }
 
 }  // namespace
+
+void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
+  const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
+  const std::uint64_t texels = std::uint64_t{size} * size * face_count(input.light);
+  needs.memory.push_back(
+      {"shadow map", texels * vulkan::texel_bytes(depth_format(input.parameters)), size});
+  if (!knows_two_surfaces(input.parameters)) return;
+  for (const char* layer : {"first depths", "second depths"})
+    needs.memory.push_back({layer, texels * vulkan::texel_bytes(layer_format), size});
+}
 
 void DepthMap::draw(PrepareContext& context, double kernel_radius, double border) {
   const ParameterValues& parameters = context.input.parameters;
@@ -247,7 +260,7 @@ void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
 void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
   if (!first_) {
     vulkan::ImageDescription layer = image_.description();
-    layer.format = VK_FORMAT_D32_SFLOAT;
+    layer.format = layer_format;
     first_ = vulkan::Image(context.device, context.memory, "first depths", layer);
     second_ = vulkan::Image(context.device, context.memory, "second depths", layer);
   }

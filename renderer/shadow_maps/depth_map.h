@@ -21,6 +21,9 @@ Diagnostic map_diagnostic();
 /// map of them.
 class DepthMap {
  public:
+  /// What it allocates.
+  static void require(const TechniqueInput& input, Requirements& needs);
+
   /// Draws the map for this frame. `kernel_radius` in texels is how far the filter reads from the
   /// receiver's place; the bias of strategy slope follows it. The map is wider than what it serves
   /// by `border` texels.

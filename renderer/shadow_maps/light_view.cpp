@@ -99,6 +99,10 @@ bool has_six_faces(const WorldLight& light) {
 
 }  // namespace
 
+std::uint32_t face_count(const Light& light) {
+  return light.kind == LightKind::point ? 6 : 1;
+}
+
 LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const LightFit& fit,
                          std::uint32_t map_size, double guard) {
   LightView view;

@@ -16,6 +16,9 @@ struct LightView {
   float far_distance = 1.0f;
 };
 
+/// Faces of a light's view.
+std::uint32_t face_count(const Light& light);
+
 /// Fits the view to what the scene needs: a spot light's cone, the scene's box for a directional
 /// light; within the side planes from the nearest of `fit`'s boxes to its farthest receiver (van
 /// Sambeek 2007, 2.2.3). Casters before near are clamped to it when drawn with depth clamp, and so

@@ -5,9 +5,27 @@
 
 namespace penumbra::shadow_maps {
 
+namespace {
+
+/// Texels along a side of the first level; the others stand beside it.
+std::uint32_t base_of(std::uint32_t map_size) {
+  return std::bit_ceil((map_size + 1) / 2);
+}
+
+}  // namespace
+
+void NearestDepths::require(const TechniqueInput& input, Requirements& needs) {
+  const std::uint32_t base =
+      base_of(static_cast<std::uint32_t>(integer_of(input.parameters, "map_size")));
+  needs.memory.push_back({"nearest depths",
+                          std::uint64_t{2} * base * base * face_count(input.light) *
+                              vulkan::texel_bytes(VK_FORMAT_R32_SFLOAT),
+                          2 * base});
+}
+
 void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {
   const vulkan::ImageDescription& map = depth.image().description();
-  const std::uint32_t base = std::bit_ceil((map.width + 1) / 2);
+  const std::uint32_t base = base_of(map.width);
   if (!image_) {
     vulkan::ImageDescription description = map;
     description.format = VK_FORMAT_R32_SFLOAT;

@@ -8,6 +8,9 @@ namespace penumbra::shadow_maps {
 /// stands before a region in a few reads (Guennebaud, Barthe and Paulin 2006).
 class NearestDepths {
  public:
+  /// What it allocates beside the depth map.
+  static void require(const TechniqueInput& input, Requirements& needs);
+
   /// One pass, "nearest depths". Takes half as many bytes as the map if its size is a power of two.
   void draw(PrepareContext& context, const DepthMap& depth);
 

@@ -9,6 +9,12 @@ VkFormat float_format(const ParameterValues& parameters, int components) {
   return half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
+void PrefilteredMap::require(const TechniqueInput& input, const BlurSettings& settings,
+                             Requirements& needs) {
+  DepthMap::require(input, needs);
+  BlurredMap::require(input, settings, needs);
+}
+
 void PrefilteredMap::draw(PrepareContext& context, const BlurSettings& settings) {
   // A sampler interpolates: it reads half a texel beyond the blur.
   depth_.draw(context, static_cast<double>(integer_of(context.input.parameters, "blur")) + 0.5);

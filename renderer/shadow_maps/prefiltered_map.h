@@ -11,6 +11,8 @@ VkFormat float_format(const ParameterValues& parameters, int components);
 /// before it is read.
 class PrefilteredMap {
  public:
+  static void require(const TechniqueInput& input, const BlurSettings& settings,
+                      Requirements& needs);
   void draw(PrepareContext& context, const BlurSettings& settings);
   void bind(vulkan::Bindings& bindings) const;
 

@@ -43,15 +43,30 @@ std::vector<Parameter> summed_area_parameters() {
   return list;
 }
 
+namespace {
+
+/// Bytes of a place of the table.
+VkDeviceSize entry_bytes(const std::string& type) {
+  return type == "fp32" || type == "int32" ? 8 : 16;
+}
+
+}  // namespace
+
+void SummedAreaTable::require(const TechniqueInput& input, Requirements& needs) {
+  const auto size = static_cast<std::uint64_t>(integer_of(input.parameters, "map_size"));
+  needs.memory.push_back(
+      {"summed-area table",
+       size * size * face_count(input.light) * entry_bytes(choice_of(input.parameters, "table"))});
+}
+
 void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth) {
   const std::string& type = choice_of(context.input.parameters, "table");
   if (type == "fp64" && context.device.features.shaderFloat64 == VK_FALSE)
     throw unsupported("this device has no doubles (shaderFloat64), so no table of them", "table");
   const vulkan::ImageDescription& map = depth.image().description();
-  const VkDeviceSize entry = type == "fp32" || type == "int32" ? 8 : 16;
   if (!table_)
     table_ = vulkan::Buffer(context.device, context.memory, "summed-area table",
-                            entry * map.width * map.height * map.layers,
+                            entry_bytes(type) * map.width * map.height * map.layers,
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   constexpr std::uint32_t lines = 8;  // of a group, as summed_area.comp has it
   const auto run = [&](const char* name, const std::string& own, const vulkan::Bindings& bindings) {

@@ -10,6 +10,9 @@ std::vector<Parameter> summed_area_parameters();
 /// Sums of a depth map's first two moments over all rectangles that begin at its corner.
 class SummedAreaTable {
  public:
+  /// What it allocates beside the depth map.
+  static void require(const TechniqueInput& input, Requirements& needs);
+
   /// Two passes, "sum rows" and "sum columns". Throws `unsupported` for table fp64 where the device
   /// has no doubles.
   void draw(PrepareContext& context, const DepthMap& depth);

@@ -1,5 +1,7 @@
 #include "renderer/vulkan/device.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -173,6 +175,9 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
 }  // namespace
 
 void check(VkResult result, const char* call) {
+  // A size that memory does not hold is the request's fault; the device goes on.
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+    throw unsupported("not enough memory for this picture: " + std::string(call) + " failed");
   if (result != VK_SUCCESS)
     throw device_error(std::string(call) + ": " + name_of(result) + " (" + std::to_string(result) +
                        ")");
@@ -320,6 +325,17 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags
       if ((type_bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & flags) == flags)
         return i;
   throw device_error("no memory type fits");
+}
+
+DeviceLimits Device::limits() const {
+  VkDeviceSize heap = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if ((memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
+      heap = std::max(heap, memory.memoryHeaps[i].size);
+  const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) *
+                                static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  return {info.type == "cpu" ? machine : heap, heap, properties.limits.maxStorageBufferRange,
+          properties.limits.maxImageDimension2D};
 }
 
 void Device::throw_if_validation_failed() {

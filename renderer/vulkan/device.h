@@ -100,6 +100,10 @@ class Device {
   std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted,
                             VkMemoryPropertyFlags preferred) const;
 
+  /// What requests are checked against. A device that is the processor has the machine's memory,
+  /// whatever its one heap says.
+  DeviceLimits limits() const;
+
   /// Throws a device error with the collected validation messages, if there are any.
   void throw_if_validation_failed();
 

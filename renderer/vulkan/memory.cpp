@@ -27,24 +27,9 @@ Owned<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs
   const bool fits = total <= device.memory.memoryHeaps[heap].size;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   if (!fits || vkAllocateMemory(device.handle, &info, nullptr, &memory) != VK_SUCCESS)
-    throw device_error("not enough memory for " + name + ": " + std::to_string(needs.size) +
-                       " bytes, " + std::to_string(total) + " in all");
+    throw unsupported("not enough memory for " + name + ": " + std::to_string(needs.size) +
+                      " bytes, " + std::to_string(total) + " in all");
   return {device.handle, memory};
-}
-
-/// Bytes of a texel, exact for formats of many bytes and never too many for the others.
-double texel_bytes(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-    case VK_FORMAT_R32G32B32A32_UINT:
-      return 16.0;
-    case VK_FORMAT_R32G32_SFLOAT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-    case VK_FORMAT_R16G16B16A16_UNORM:
-      return 8.0;
-    default:
-      return 4.0;
-  }
 }
 
 VkImageAspectFlags aspects_of(VkFormat format) {
@@ -77,6 +62,26 @@ void MemoryLedger::add(const std::string& name, std::uint64_t bytes) {
     entries.push_back({name, bytes});
 }
 
+std::uint32_t texel_bytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+      return 16;
+    case VK_FORMAT_R32G32_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_UNORM:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return 8;
+    case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_D16_UNORM:
+      return 2;
+    case VK_FORMAT_R8_UNORM:
+      return 1;
+    default:
+      return 4;
+  }
+}
+
 bool has_stencil(VkFormat format) {
   return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
 }
@@ -90,9 +95,9 @@ Buffer::Buffer(Device& device, MemoryLedger& ledger, const std::string& name, Vk
     : size_(bytes) {
   const auto& limits = device.properties.limits;
   if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && bytes > limits.maxStorageBufferRange)
-    throw device_error(name + " of " + std::to_string(bytes) +
-                       " bytes exceeds the device's limit of " +
-                       std::to_string(limits.maxStorageBufferRange) + " for a storage buffer");
+    throw unsupported(name + " of " + std::to_string(bytes) +
+                      " bytes exceeds the device's limit of " +
+                      std::to_string(limits.maxStorageBufferRange) + " for a storage buffer");
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = bytes;
   info.usage = usage;
@@ -113,12 +118,12 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
     : description_(description), aspects_(aspects_of(description.format)) {
   const auto& limits = device.properties.limits;
   if (std::max(description.width, description.height) > limits.maxImageDimension2D)
-    throw device_error(name + " of " + std::to_string(description.width) + "x" +
-                       std::to_string(description.height) + " exceeds the device's limit of " +
-                       std::to_string(limits.maxImageDimension2D));
+    throw unsupported(name + " of " + std::to_string(description.width) + "x" +
+                      std::to_string(description.height) + " exceeds the device's limit of " +
+                      std::to_string(limits.maxImageDimension2D));
   if (description.layers > limits.maxImageArrayLayers)
-    throw device_error(name + " has more layers than the device's limit of " +
-                       std::to_string(limits.maxImageArrayLayers));
+    throw unsupported(name + " has more layers than the device's limit of " +
+                      std::to_string(limits.maxImageArrayLayers));
 
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -136,12 +141,13 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
                                                &format_limits) != VK_SUCCESS)
     throw device_error("the device has no image format for " + name);
   // Reckoned here, since the driver's own answer overflows for huge images.
-  const double bytes = texel_bytes(description.format) * description.width * description.height *
-                       description.layers * (description.levels > 1 ? 4.0 / 3.0 : 1.0);
+  const double bytes = 1.0 * texel_bytes(description.format) * description.width *
+                       description.height * description.layers *
+                       (description.levels > 1 ? 4.0 / 3.0 : 1.0);
   if (bytes > static_cast<double>(format_limits.maxResourceSize))
-    throw device_error(name + " of " + std::to_string(static_cast<std::uint64_t>(bytes)) +
-                       " bytes exceeds the device's limit of " +
-                       std::to_string(format_limits.maxResourceSize) + " for an image");
+    throw unsupported(name + " of " + std::to_string(static_cast<std::uint64_t>(bytes)) +
+                      " bytes exceeds the device's limit of " +
+                      std::to_string(format_limits.maxResourceSize) + " for an image");
 
   VkImage image = VK_NULL_HANDLE;
   check(vkCreateImage(device.handle, &info, nullptr, &image), "vkCreateImage");

@@ -32,7 +32,7 @@ struct BufferRange {
 class Buffer {
  public:
   Buffer() = default;
-  /// `bytes` of at least 1. Charges `ledger` under `name`. Throws a device error naming the buffer
+  /// `bytes` of at least 1. Charges `ledger` under `name`. Throws `unsupported` naming the buffer
   /// when memory or a limit is exceeded.
   Buffer(Device& device, MemoryLedger& ledger, const std::string& name, VkDeviceSize bytes,
          VkBufferUsageFlags usage, MemoryKind kind = MemoryKind::device);
@@ -93,6 +93,8 @@ class Image {
   VkImageAspectFlags aspects_ = 0;
 };
 
+/// Bytes of a texel; drivers may pad depth beside stencil.
+std::uint32_t texel_bytes(VkFormat format);
 bool has_stencil(VkFormat format);
 bool has_depth(VkFormat format);
 

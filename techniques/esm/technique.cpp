@@ -57,7 +57,10 @@ std::vector<Parameter> esm_parameters() {
 /// part of the caster that may be filtered and one of the receiver.
 class ExponentialShadowMap : public Technique {
  public:
-  void require(const TechniqueInput& input, Requirements&) override {
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::PrefilteredMap::require(input, exponential_settings(input.parameters), needs);
+    if (keeps_farthest(input.parameters))
+      shadow_maps::BlurredMap::require(input, farthest_settings(), needs);
     if (choice_of(input.parameters, "filtering") == "linear") return;
     for (const char* name : {"mips", "anisotropic"})
       if (boolean_of(input.parameters, name))
@@ -68,19 +71,9 @@ class ExponentialShadowMap : public Technique {
 
   void prepare(PrepareContext& context) override {
     const ParameterValues& parameters = context.input.parameters;
-    shadow_maps::BlurSettings settings;
-    settings.encoder = "techniques/esm/exponential.frag";
-    settings.format = shadow_maps::float_format(parameters, 1);
-    if (choice_of(parameters, "filtering") == "logarithmic")
-      settings.filter = shadow_maps::MapFilter::logarithmic;
-    exponentials_.draw(context, settings);
-    z_max_ = choice_of(parameters, "fallback") == "z-max";
-    if (!z_max_) return;
-    settings.encoder = "techniques/esm/farthest.frag";
-    settings.format = VK_FORMAT_R32_SFLOAT;
-    settings.filter = shadow_maps::MapFilter::maximum;
-    settings.name = "farthest depths";
-    farthest_.draw(context, exponentials_.depth(), settings);
+    exponentials_.draw(context, exponential_settings(parameters));
+    z_max_ = keeps_farthest(parameters);
+    if (z_max_) farthest_.draw(context, exponentials_.depth(), farthest_settings());
   }
 
   void bind(vulkan::Bindings& bindings) const override {
@@ -89,6 +82,23 @@ class ExponentialShadowMap : public Technique {
   }
 
  private:
+  static shadow_maps::BlurSettings exponential_settings(const ParameterValues& parameters) {
+    const bool logarithmic = choice_of(parameters, "filtering") == "logarithmic";
+    return {
+        .encoder = "techniques/esm/exponential.frag",
+        .format = shadow_maps::float_format(parameters, 1),
+        .filter = logarithmic ? shadow_maps::MapFilter::logarithmic : shadow_maps::MapFilter::mean};
+  }
+  static shadow_maps::BlurSettings farthest_settings() {
+    return {.encoder = "techniques/esm/farthest.frag",
+            .format = VK_FORMAT_R32_SFLOAT,
+            .filter = shadow_maps::MapFilter::maximum,
+            .name = "farthest depths"};
+  }
+  static bool keeps_farthest(const ParameterValues& parameters) {
+    return choice_of(parameters, "fallback") == "z-max";
+  }
+
   shadow_maps::PrefilteredMap exponentials_;
   shadow_maps::BlurredMap farthest_;  ///< only with fallback z-max
   bool z_max_ = false;

@@ -43,18 +43,23 @@ std::vector<Parameter> evsm_parameters() {
 /// smaller holds.
 class ExponentialVarianceShadowMap : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::PrefilteredMap::require(input, map_settings(input.parameters), needs);
+  }
 
   void prepare(PrepareContext& context) override {
-    const ParameterValues& parameters = context.input.parameters;
-    const int components = choice_of(parameters, "components") == "4" ? 4 : 2;
-    map_.draw(context, {.encoder = "techniques/evsm/warped_moments.frag",
-                        .format = shadow_maps::float_format(parameters, components)});
+    map_.draw(context, map_settings(context.input.parameters));
   }
 
   void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
+  static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
+    const int components = choice_of(parameters, "components") == "4" ? 4 : 2;
+    return {.encoder = "techniques/evsm/warped_moments.frag",
+            .format = shadow_maps::float_format(parameters, components)};
+  }
+
   shadow_maps::PrefilteredMap map_;
 };
 

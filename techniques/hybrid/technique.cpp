@@ -12,7 +12,8 @@ constexpr VkFormat mask_format = VK_FORMAT_R8_UNORM;
 /// Hard shadows from a map, but for samples at its silhouettes: there volumes are counted.
 class Hybrid : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements& needs) override {
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
     needs.stencil = true;
     needs.adjacency = true;
   }

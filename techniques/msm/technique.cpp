@@ -34,18 +34,23 @@ std::vector<Parameter> msm_parameters() {
 /// Moment shadow maps: four moments of depth bound the light from above more tightly than two.
 class MomentShadowMap : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::PrefilteredMap::require(input, map_settings(input.parameters), needs);
+  }
 
   void prepare(PrepareContext& context) override {
-    const bool unorm16 = choice_of(context.input.parameters, "precision") == "unorm16";
-    map_.draw(context,
-              {.encoder = "techniques/msm/moments.frag",
-               .format = unorm16 ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT});
+    map_.draw(context, map_settings(context.input.parameters));
   }
 
   void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
+  static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
+    const bool unorm16 = choice_of(parameters, "precision") == "unorm16";
+    return {.encoder = "techniques/msm/moments.frag",
+            .format = unorm16 ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT};
+  }
+
   shadow_maps::PrefilteredMap map_;
 };
 

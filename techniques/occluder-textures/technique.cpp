@@ -44,7 +44,9 @@ PlaneData data_of(const OccluderPlane& plane) {
 /// Planes with textures of the casters' silhouettes; receivers are projected onto them.
 class OccluderTextures : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements& needs) override {
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "resolution"));
+    needs.memory.push_back({"occluder textures", std::uint64_t{size} * size, size});
     // Which planes are worth one hangs on all casters together.
     needs.casters = CasterUse::all;
   }

@@ -59,7 +59,9 @@ std::vector<Parameter> pcf_parameters() {
 /// Percentage-closer filtering: compares first, filters after.
 class PercentageCloserFilter : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
+  }
 
   void prepare(PrepareContext& context) override {
     const ParameterValues& parameters = context.input.parameters;

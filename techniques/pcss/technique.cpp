@@ -48,7 +48,10 @@ std::vector<Parameter> pcss_parameters() {
 /// Percentage-closer soft shadows: the filter is as wide as the penumbra ought to be.
 class PercentageCloserSoftShadows : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
+    shadow_maps::NearestDepths::require(input, needs);
+  }
 
   void prepare(PrepareContext& context) override {
     // Penumbrae reach over the map's border by their width at most; how wide they are is known only

@@ -16,7 +16,10 @@ std::vector<Parameter> savsm_parameters() {
 /// Summed-area variance shadow maps: moments over any square of texels in sixteen reads.
 class SummedAreaVarianceShadowMap : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
+    shadow_maps::SummedAreaTable::require(input, needs);
+  }
 
   void prepare(PrepareContext& context) override {
     const std::int64_t kernel = integer_of(context.input.parameters, "kernel");

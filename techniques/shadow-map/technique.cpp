@@ -6,7 +6,9 @@ namespace {
 /// Hard shadows from one comparison with a linear depth map.
 class ShadowMap : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
+  }
   void prepare(PrepareContext& context) override { map_.draw(context, 0.0); }
   void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 

@@ -10,7 +10,9 @@ class Template : public Technique {
  public:
   /// Say here what must exist before anything is drawn (stencil, adjacency, light points, ...), and
   /// throw unsupported("why", "field") for a light or scene that cannot be served.
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::DepthMap::require(input, needs);
+  }
 
   /// Once per frame and batch of light points. Allocate on first use, draw inside context.pass.
   void prepare(PrepareContext& context) override { map_.draw(context, 0.0); }

@@ -16,16 +16,22 @@ std::vector<Parameter> vsm_parameters() {
 /// Variance shadow maps: a map of moments is filtered once, and bounds the light from above.
 class VarianceShadowMap : public Technique {
  public:
-  void require(const TechniqueInput&, Requirements&) override {}
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    shadow_maps::PrefilteredMap::require(input, map_settings(input.parameters), needs);
+  }
 
   void prepare(PrepareContext& context) override {
-    map_.draw(context, {.encoder = "techniques/vsm/moments.frag",
-                        .format = shadow_maps::float_format(context.input.parameters, 2)});
+    map_.draw(context, map_settings(context.input.parameters));
   }
 
   void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
 
  private:
+  static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
+    return {.encoder = "techniques/vsm/moments.frag",
+            .format = shadow_maps::float_format(parameters, 2)};
+  }
+
   shadow_maps::PrefilteredMap map_;
 };
 
