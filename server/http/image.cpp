@@ -15,7 +15,9 @@ nlohmann::json request_in_query(const Call& call) {
 }
 
 void get_image(Call& call) {
-  auto record = submit(call, request_in_query(call));
+  const Submitter who = submitter_of(call);
+  auto record = submit(call, request_in_query(call), who);
+  const Held held(*call.service.renders, record.id, who);
   if (!is_over(record)) record = wait_for(call, record, call.service.options.render_deadline_s);
   if (!is_over(record)) throw Error("deadline", "the picture was not ready in time");
   send_artefact(call, record, "image.png");

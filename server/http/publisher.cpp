@@ -56,7 +56,7 @@ void Publisher::run(const storage::StudyRecord& record) {
     const auto study = study::parse_study(record.document);
     std::filesystem::create_directories(pictures);
     const auto all = study::all_renders(study);
-    for (const auto& request : all) submit(request);  // all workers have something to do
+    for (const auto& request : all) submit(record, request);  // all workers have something to do
     for (const auto& request : all) render_one(record, request);
     studies.open(record.id, record.version, utc_now());
     spdlog::info("study {} version {} is open", record.id, record.version);
@@ -73,11 +73,13 @@ void Publisher::run(const storage::StudyRecord& record) {
   }
 }
 
-RenderRecord Publisher::submit(const nlohmann::json& request) {
+RenderRecord Publisher::submit(const storage::StudyRecord& record, const nlohmann::json& request) {
+  // Participants wait for it, and nothing that others send may end it.
+  const Submitter who{Priority::publication, record.id, {"publication of " + record.id}, {}};
   while (true) {
     if (stopping) throw Stopped{};
     try {
-      return renders.submit(request);
+      return renders.submit(request, who);
     } catch (const Error& error) {
       if (error.code == "draining") throw Stopped{};
       if (error.code != "busy") throw;
@@ -87,11 +89,13 @@ RenderRecord Publisher::submit(const nlohmann::json& request) {
 }
 
 void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::json& request) {
-  auto render = submit(request);
-  while (render.status == "queued" || render.status == "running") {
+  auto render = submit(record, request);
+  // Where no worker can be had for a while, those that wait end as `busy`: asked for again, they
+  // wait.
+  while (!is_over(render) || (render.status == "failed" && failure_of(render).code == "busy")) {
     if (stopping) throw Stopped{};
-    const auto later = renders.wait(render.id, look_s);
-    render = later ? *later : submit(request);
+    const auto later = is_over(render) ? std::nullopt : renders.wait(render.id, look_s);
+    render = later ? *later : submit(record, request);
   }
   if (render.status != "done") {
     if (stopping) throw Stopped{};

@@ -40,7 +40,7 @@ class Publisher {
   void start(const storage::StudyRecord& record);
   void run(const storage::StudyRecord& record);
   void render_one(const storage::StudyRecord& record, const nlohmann::json& request);
-  RenderRecord submit(const nlohmann::json& request);
+  RenderRecord submit(const storage::StudyRecord& record, const nlohmann::json& request);
 
   storage::Studies& studies;
   RenderService& renders;

@@ -7,6 +7,7 @@
 #include "server/http/event_stream.h"
 #include "server/http/reply.h"
 #include "server/http/request_stream.h"
+#include "server/http/secrets.h"
 #include "server/http/service.h"
 
 namespace penumbra::server::http {
@@ -24,10 +25,38 @@ RenderRecord record_at(Call& call) {
   return *record;
 }
 
+/// Keys cannot be mistaken for one another: what a client names is a lease, whatever it says.
+std::string lease_key(const std::string& lease) {
+  return "lease " + lease;
+}
+constexpr auto researcher_key = "researcher";
+
+/// The connection of a call is its client's own, unless a proxy stands between.
+std::optional<std::string> connection_key(const Call& call) {
+  if (behind_proxy(call.request)) return {};
+  return "connection " + call.request.remote_addr + " " + std::to_string(call.request.remote_port);
+}
+
+/// Counts a render against the limit of its client.
+void check_allowance(Call& call) {
+  if (call.service.draining) throw Error("draining", "the server is stopping");
+  if (behind_proxy(call.request) && !is_researcher(call.service, call.request) &&
+      !call.service.render_calls.allow(client_of(call.request)))
+    throw Error("too_many", "too many renders from one address; wait a little");
+}
+
 void post_render(Call& call) {
-  const auto record = submit(call, call.json());
+  const std::string lease = random_token();
+  Submitter who = submitter_of(call);
+  who.keys = {lease_key(lease)};
+  if (const auto key = connection_key(call)) who.keys.insert(*key);
+  who.further_keys = {researcher_key};
+  const auto record = submit(call, call.json(), who);
   call.response.set_header("Location", path_of(record));
-  send_json(call.response, is_over(record) ? 200 : 202, body_of(record));
+  auto body = body_of(record);
+  body["lease"] = lease;
+  if (!is_over(record)) body["links"]["cancel"] = path_of(record) + "?lease=" + lease;
+  send_json(call.response, is_over(record) ? 200 : 202, body);
 }
 
 void get_render(Call& call) {
@@ -38,9 +67,17 @@ void get_render(Call& call) {
 }
 
 void cancel_render(Call& call) {
-  const auto& id = call.path.at("id");
-  if (!call.service.renders->cancel(id)) throw nothing_here();
-  send_json(call.response, 200, body_of(record_at(call)));
+  const auto before = record_at(call);
+  std::set<std::string> keys{lease_key(call.request.get_param_value("lease"))};
+  if (const auto key = connection_key(call)) keys.insert(*key);
+  if (is_researcher(call.service, call.request)) keys.insert(researcher_key);
+  if (!call.service.renders->release(before.id, keys) && !is_over(record_at(call)))
+    throw Error("forbidden",
+                "others asked for this render; only a lease, given when it was posted, cancels it",
+                "lease");
+  // A running one ends within milliseconds.
+  const auto after = call.service.renders->wait(before.id, 0.0);
+  send_json(call.response, 200, body_of(after ? *after : before));
 }
 
 template <const char* name>
@@ -73,6 +110,19 @@ std::string media_type(const std::string& name) {
   return name.ends_with(".png") ? "image/png" : "image/x-exr";
 }
 
+/// Has a finished render's file made that is not stored, or damaged; null where it has none.
+SharedBytes make_artefact(Call& call, const std::string& id, const std::string& name) {
+  check_allowance(call);
+  const Submitter who = submitter_of(call);
+  const auto asked = call.service.renders->submit_artefact(id, name, who);
+  if (!asked) return nullptr;
+  const Held held(*call.service.renders, id, who);
+  const auto made = wait_for(call, *asked, call.service.options.render_deadline_s);
+  if (!is_over(made)) throw Error("deadline", "the file was not ready in time");
+  if (made.status != "done") throw failure_of(made);
+  return call.service.renders->stored_artefact(id, name);
+}
+
 }  // namespace
 
 nlohmann::json body_of(const RenderRecord& record) {
@@ -96,12 +146,18 @@ nlohmann::json body_of(const RenderRecord& record) {
           {"links", links}};
 }
 
-RenderRecord submit(Call& call, const nlohmann::json& request) {
-  if (call.service.draining) throw Error("draining", "the server is stopping");
-  if (behind_proxy(call.request) && !is_researcher(call.service, call.request) &&
-      !call.service.render_calls.allow(client_of(call.request)))
-    throw Error("too_many", "too many renders from one address; wait a little");
-  return call.service.renders->submit(request);
+Submitter submitter_of(const Call& call) {
+  const bool researcher = is_researcher(call.service, call.request);
+  Submitter who;
+  who.priority = researcher ? Priority::researcher : Priority::anonymous;
+  who.client = researcher ? researcher_key : client_of(call.request);
+  who.keys = {lease_key(random_token())};
+  return who;
+}
+
+RenderRecord submit(Call& call, const nlohmann::json& request, const Submitter& who) {
+  check_allowance(call);
+  return call.service.renders->submit(request, who);
 }
 
 RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
@@ -116,18 +172,14 @@ RenderRecord wait_for(Call& call, const RenderRecord& record, double seconds) {
     const auto next = call.service.renders->wait(record.id, std::min(left, 1.0));
     if (!next) throw nothing_here();
     seen = *next;
-    if (!is_over(seen) && !call.service.draining && connection.closed_by_peer()) {
-      call.service.renders->cancel(record.id);
+    if (!is_over(seen) && !call.service.draining && connection.closed_by_peer())
       throw Error("cancelled", "the client hung up");
-    }
   }
   return seen;
 }
 
 void send_artefact(Call& call, const RenderRecord& record, const std::string& name) {
-  if (record.status == "failed" && record.error.is_object())
-    throw Error(record.error.value("code", "internal"), record.error.value("message", ""),
-                record.error.value("field", ""));
+  if (record.status == "failed") throw failure_of(record);
   if (record.status != "done") throw Error("conflict", "the render is " + record.status, "status");
   // The artefacts of one render have addresses of their own, so that its id serves as tag for each.
   auto& response = call.response;
@@ -135,14 +187,23 @@ void send_artefact(Call& call, const RenderRecord& record, const std::string& na
   const std::string whose = is_local(call.service.options) ? "public" : "private";
   response.set_header("Cache-Control", whose + ", max-age=31536000, immutable");
   if (client_has(call.request, response, record.id)) return;
-  const auto bytes = call.service.renders->artefact(record.id, name);
-  if (!bytes) {
+  SharedBytes bytes;
+  try {
+    bytes = call.service.renders->stored_artefact(record.id, name);
+    if (!bytes) bytes = make_artefact(call, record.id, name);
+    if (!bytes) throw nothing_here();
+  } catch (...) {
     response.headers.erase("ETag");
     response.headers.erase("Cache-Control");
-    throw nothing_here();
+    throw;
   }
   response.status = 200;
-  response.set_content(*bytes, media_type(name));
+  // All that send it share one copy.
+  response.set_content_provider(
+      bytes->size(), media_type(name),
+      [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        return sink.write(bytes->data() + offset, length);
+      });
 }
 
 void add_render_routes(std::vector<Route>& table) {

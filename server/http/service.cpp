@@ -25,11 +25,13 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
 std::string Service::not_ready() const {
   if (draining) return "draining";
   if (!database.healthy()) return "the database is damaged: restore a backup";
+  if (const std::string trouble = renders->trouble(); !trouble.empty()) return trouble;
   return {};
 }
 
 nlohmann::json Service::gauges() {
   nlohmann::json numbers = {{"renders", renders->statistics()},
+                            {"sweeps", sweeps.statistics()},
                             {"ready", not_ready().empty()},
                             {"participants", nlohmann::json::object()}};
   if (!database.healthy()) return numbers;

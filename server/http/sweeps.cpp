@@ -16,6 +16,10 @@ namespace {
 
 using nlohmann::json;
 
+/// Sweeps that run side by side, and that are kept; others are asked for anew from the cache.
+constexpr std::size_t most_at_once = 4;
+constexpr std::size_t most_kept = 32;
+
 std::vector<json> list_of(const json& request, const char* key, std::size_t most,
                           const json& otherwise, bool (json::*is_right)() const noexcept) {
   const json list = request.value(key, otherwise);
@@ -27,30 +31,13 @@ std::vector<json> list_of(const json& request, const char* key, std::size_t most
   return list.get<std::vector<json>>();
 }
 
-/// Every combination as a render request, techniques varying fastest.
-std::vector<json> combinations(const json& request) {
-  check_keys(request, {"scenes", "techniques", "sizes", "measure"});
-  const json measure = request.value("measure", json(true));
-  if (!measure.is_boolean()) throw bad_value("measure", "must be true or false");
-  std::vector<json> all;
-  for (const auto& scene : list_of(request, "scenes", 100, nullptr, &json::is_string))
-    for (const auto& size : list_of(request, "sizes", 20, {600}, &json::is_number_integer))
-      for (const auto& technique : list_of(request, "techniques", 100, nullptr, &json::is_string))
-        all.push_back({{"scene", scene},
-                       {"technique", technique},
-                       {"width", size},
-                       {"height", size},
-                       {"measure", measure}});
-  return all;
-}
-
 json body_of_sweep(const SweepState& sweep) {
   const auto self = "/api/v1/sweeps/" + sweep.id;
   return {{"id", sweep.id},
           {"status", sweep.done() ? "done" : "running"},
           {"done", sweep.over - sweep.failed},
           {"failed", sweep.failed},
-          {"total", sweep.requests.size()},
+          {"total", sweep.total},
           {"links",
            {{"self", self}, {"results", self + "/results.csv"}, {"events", self + "/events"}}}};
 }
@@ -61,8 +48,8 @@ std::string cell(const json& object, const json::json_pointer& place) {
   return study::csv_text(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-std::string csv_of(const SweepState& sweep) {
-  static const std::vector<std::pair<std::string, json::json_pointer>> columns{
+const std::vector<std::pair<std::string, json::json_pointer>>& columns() {
+  static const std::vector<std::pair<std::string, json::json_pointer>> list{
       {"scene", "/request/scene"_json_pointer},
       {"technique", "/request/technique"_json_pointer},
       {"size", "/request/width"_json_pointer},
@@ -85,21 +72,21 @@ std::string csv_of(const SweepState& sweep) {
       {"missing_shadow", "/quality/missing_shadow"_json_pointer},
       {"error", "/error/message"_json_pointer},
   };
-  std::string text;
-  for (const auto& [name, place] : columns) text += (text.empty() ? "" : ",") + name;
-  text += "\r\n";
-  for (std::size_t i = 0; i < sweep.records.size(); ++i) {
-    if (!sweep.records[i]) continue;
-    const auto& record = *sweep.records[i];
-    const json row = {
-        {"request", sweep.requests[i]}, {"status", record.status},   {"id", record.id},
-        {"cost", record.cost},          {"quality", record.quality}, {"error", record.error}};
-    std::string line;
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      line += (c == 0 ? "" : ",") + cell(row, columns[c].second);
-    text += line + "\r\n";
-  }
-  return text;
+  return list;
+}
+
+std::string header() {
+  std::string line;
+  for (const auto& [name, place] : columns()) line += (line.empty() ? "" : ",") + name;
+  return line + "\r\n";
+}
+
+std::string row_of(const json& request, const RenderRecord& record) {
+  const json row = {{"request", request},  {"status", record.status},   {"id", record.id},
+                    {"cost", record.cost}, {"quality", record.quality}, {"error", record.error}};
+  std::string line;
+  for (const auto& column : columns()) line += (line.empty() ? "" : ",") + cell(row, column.second);
+  return line + "\r\n";
 }
 
 SweepState sweep_at(Call& call) {
@@ -119,8 +106,10 @@ void get_sweep(Call& call) {
 }
 
 void get_results(Call& call) {
+  const auto rows = call.service.sweeps.results(call.path.at("id"));
+  if (!rows) throw nothing_here();
   call.response.status = 200;
-  call.response.set_content(csv_of(sweep_at(call)), "text/csv; charset=utf-8");
+  call.response.set_content(*rows, "text/csv; charset=utf-8");
 }
 
 void get_sweep_events(Call& call) {
@@ -140,80 +129,154 @@ void get_sweep_events(Call& call) {
 
 }  // namespace
 
+SweepRequests::SweepRequests(const json& request) {
+  check_keys(request, {"scenes", "techniques", "sizes", "measure"});
+  measure = request.value("measure", json(true));
+  if (!measure.is_boolean()) throw bad_value("measure", "must be true or false");
+  scenes = list_of(request, "scenes", 100, nullptr, &json::is_string);
+  sizes = list_of(request, "sizes", 20, {600}, &json::is_number_integer);
+  techniques = list_of(request, "techniques", 100, nullptr, &json::is_string);
+}
+
+json SweepRequests::at(std::size_t row) const {
+  const json& size = sizes[row / techniques.size() % sizes.size()];
+  return {{"scene", scenes[row / techniques.size() / sizes.size()]},
+          {"technique", techniques[row % techniques.size()]},
+          {"width", size},
+          {"height", size},
+          {"measure", measure}};
+}
+
+Sweeps::Sweep::Sweep(std::string id, SweepRequests requests_)
+    : state{std::move(id), requests_.size(), 0, 0}, requests(std::move(requests_)) {}
+
 SweepState Sweeps::start(const json& request, const std::string& id, const std::string& now) {
-  const auto all = combinations(request);
+  const SweepRequests checked(request);
   stored.put(id, request, now);
   const std::lock_guard lock(mutex);
-  return run(id, request).state;
+  return add(id, request)->state;
 }
 
-Sweeps::Running& Sweeps::run(const std::string& id, const json& request) {
-  auto running = std::make_unique<Running>();
-  running->state.id = id;
-  running->state.requests = combinations(request);
-  running->state.records.resize(running->state.requests.size());
-  auto& reference = *running;
-  sweeps[id] = std::move(running);
-  reference.thread = std::thread([this, &reference] { render_all(reference); });
-  return reference;
+Sweeps::Shared Sweeps::add(const std::string& id, const json& request) {
+  if (stopping) throw Error("draining", "the server is stopping");
+  forget_old();
+  auto sweep = std::make_shared<Sweep>(id, SweepRequests(request));
+  sweeps[id] = sweep;
+  order.push_back(id);
+  waiting.push_back(sweep);
+  if (idle < waiting.size() && threads.size() < most_at_once)
+    threads.emplace_back([this] { work(); });
+  changed.notify_all();
+  return sweep;
 }
 
-Sweeps::Running* Sweeps::known(const std::string& id) {
-  if (const auto found = sweeps.find(id); found != sweeps.end()) return found->second.get();
+/// Keeps the newest and those that are not done.
+void Sweeps::forget_old() {
+  for (auto id = order.begin(); id != order.end() && order.size() >= most_kept;) {
+    const bool done = sweeps.at(*id)->state.done();
+    if (done) sweeps.erase(*id);
+    id = done ? order.erase(id) : std::next(id);
+  }
+}
+
+Sweeps::Shared Sweeps::known(const std::string& id) {
+  if (const auto found = sweeps.find(id); found != sweeps.end()) return found->second;
   const auto request = stored.find(id);
   if (!request || stopping) return nullptr;
-  return &run(id, *request);
+  return add(id, *request);
 }
 
 std::optional<SweepState> Sweeps::find(const std::string& id) {
   const std::lock_guard lock(mutex);
-  const auto* running = known(id);
-  if (running == nullptr) return std::nullopt;
-  return running->state;
+  const Shared sweep = known(id);
+  if (!sweep) return std::nullopt;
+  return sweep->state;
 }
 
 std::optional<SweepState> Sweeps::wait(const std::string& id, std::size_t over, double seconds) {
   std::unique_lock lock(mutex);
-  const auto* running = known(id);
-  if (running == nullptr) return std::nullopt;
+  const Shared sweep = known(id);
+  if (!sweep) return std::nullopt;
   changed.wait_for(lock, std::chrono::duration<double>(seconds),
-                   [&] { return running->state.over > over || stopping; });
-  return running->state;
+                   [&] { return sweep->state.over > over || stopping; });
+  return sweep->state;
 }
 
-void Sweeps::render_all(Running& running) {
-  const std::size_t count = running.state.requests.size();  // requests never change
-  for (std::size_t i = 0; i < count && !stopping;) {
-    RenderRecord record;
-    try {
-      record = renders.submit(running.state.requests[i]);
-      while (!stopping && (record.status == "queued" || record.status == "running"))
-        if (const auto later = renders.wait(record.id, 1.0)) record = *later;
-    } catch (...) {
-      const Error error = error_of(std::current_exception());
-      if (error.code == "draining") return;
-      if (error.code == "busy") {
-        std::this_thread::sleep_for(std::chrono::milliseconds(200));
-        continue;
-      }
-      record.status = "failed";
-      record.error = error_body(error).at("error");
-    }
+std::optional<std::string> Sweeps::results(const std::string& id) {
+  const std::lock_guard lock(mutex);
+  const Shared sweep = known(id);
+  if (!sweep) return std::nullopt;
+  return header() + sweep->rows;
+}
+
+json Sweeps::statistics() {
+  const std::lock_guard lock(mutex);
+  return {{"kept", sweeps.size()}, {"waiting", waiting.size()}, {"running", running}};
+}
+
+void Sweeps::work() {
+  std::unique_lock lock(mutex);
+  while (true) {
+    ++idle;
+    changed.wait(lock, [&] { return stopping || !waiting.empty(); });
+    --idle;
+    if (stopping) return;
+    const Shared sweep = waiting.front();
+    waiting.pop_front();
+    ++running;
+    lock.unlock();
+    render_all(*sweep);
+    lock.lock();
+    --running;
+  }
+}
+
+void Sweeps::render_all(Sweep& sweep) {
+  const Submitter who{Priority::researcher, "sweep", {"sweep " + sweep.state.id}, {}};
+  for (std::size_t i = 0; i < sweep.requests.size() && !stopping; ++i) {
+    const json request = sweep.requests.at(i);
+    const RenderRecord record = render(request, who);
     if (stopping) return;
     const std::lock_guard lock(mutex);
-    if (record.status != "done") ++running.state.failed;
-    running.state.records[i] = record;
-    ++running.state.over;
-    ++i;
+    if (record.status != "done") ++sweep.state.failed;
+    sweep.rows += row_of(request, record);
+    ++sweep.state.over;
     changed.notify_all();
   }
 }
 
+/// Waits for the render, and for its turn where the queue is full or no worker can be had.
+RenderRecord Sweeps::render(const json& request, const Submitter& who) {
+  RenderRecord record;
+  while (!stopping) {
+    try {
+      record = renders.submit(request, who);
+      while (!stopping && !is_over(record)) {
+        const auto later = renders.wait(record.id, 1.0);
+        if (!later) break;
+        record = *later;
+      }
+    } catch (...) {
+      const Error error = error_of(std::current_exception());
+      record.status = "failed";
+      record.error = error_body(error).at("error");
+    }
+    const std::string code = record.status == "failed" ? failure_of(record).code : "";
+    if (is_over(record) && code != "busy" && code != "draining") return record;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  return record;
+}
+
 void Sweeps::stop() {
-  stopping = true;
+  std::vector<std::thread> ending;
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+    ending.swap(threads);
+  }
   changed.notify_all();
-  for (auto& [id, running] : sweeps)
-    if (running->thread.joinable()) running->thread.join();
+  for (std::thread& thread : ending) thread.join();
 }
 
 void add_sweep_routes(std::vector<Route>& table) {

@@ -10,6 +10,9 @@ using nlohmann::json;
 /// Share of a measurement's bar that the reference takes where it must be drawn first.
 constexpr double reference_part = 0.6;
 
+/// How often a thread without work looks whether its worker still lives.
+constexpr auto between_looks = std::chrono::seconds(1);
+
 Message task_message(const CanonicalRequest& request, const std::set<std::string>& wants) {
   Message message;
   message.body["task"] = {{"request", request.request},
@@ -31,9 +34,15 @@ void QueuedRenderService::work() {
       worker = hire(lock);
       continue;  // hiring let go of the lock: the end may have come meanwhile
     }
+    // One that died while it had nothing to do must not be blamed on the next picture.
+    if (const auto why = worker->died_idle()) {
+      crew_.ended();
+      crew_.failed(*why);
+      continue;
+    }
     std::shared_ptr<Job> job = queue_.take();
     if (!job) {
-      changed_.wait(lock);
+      changed_.wait_for(lock, between_looks);
       continue;
     }
     lock.unlock();
@@ -41,16 +50,20 @@ void QueuedRenderService::work() {
     lock.lock();
   }
   lock.unlock();
-  if (worker) crew_.ended();
+  if (worker && worker->alive()) crew_.ended();
 }
 
 QueuedRenderService::Crewman QueuedRenderService::hire(Lock& lock) {
+  // What waits learns at once that nothing is drawn for a while, not when the breaker closes.
+  const auto tell = [&] {
+    if (const std::string trouble = crew_.trouble(); !trouble.empty())
+      end_waiting({"busy", trouble});
+  };
+  tell();
   lock.unlock();
   Crewman worker = crew_.start();
-  const std::string trouble = worker ? "" : crew_.trouble();
   lock.lock();
-  // Whoever waits learns now that nothing will come of it for a while.
-  if (!trouble.empty() && queue_.running() == 0) end_waiting(device_error(trouble));
+  if (!worker) tell();
   return worker;
 }
 
@@ -61,19 +74,44 @@ void QueuedRenderService::execute(const std::shared_ptr<Job>& job, Crewman& work
     job->record.status = "running";
     job->record.device = worker->device();
     wants = job->wants;
-    changed_.notify_all();
+    job->moved.notify_all();
   }
   try {
     draw(*job, missing(job->request.id, wants, job->request.frames), worker);
     finish(job, wants, "done", nullptr);
   } catch (const WorkCancelled&) {
     finish(job, wants, "cancelled", nullptr);
+  } catch (const WorkerLost& lost) {
+    try_again(job, lost.what());
   } catch (const Error& error) {
     finish(job, wants, "failed",
            {{"code", error.code}, {"message", error.what()}, {"field", error.field}});
   } catch (const std::exception& error) {
     finish(job, wants, "failed", {{"code", "internal"}, {"message", error.what()}, {"field", ""}});
   }
+}
+
+/// A worker died at the job: it goes back to the front of its line once, and is refused from then
+/// on. No job waits for a new worker; its thread gets one before it takes another.
+void QueuedRenderService::try_again(const std::shared_ptr<Job>& job, const std::string& why) {
+  bool again = false;
+  {
+    const Lock lock(mutex_);
+    again = deaths_.add(job->task) < DeathList::most_deaths && !job->cancelled && !stopping_;
+    if (again) {
+      ++counters_["retries"];
+      queue_.finished(*job);
+      job->record.status = "queued";
+      job->record.progress = 0.0;
+      queue_.push_front(job);
+      job->moved.notify_all();
+      changed_.notify_all();
+    }
+  }
+  if (again) return;
+  const Error error = device_error("the renderer failed twice at this picture: " + why);
+  finish(job, {}, job->cancelled ? "cancelled" : "failed",
+         {{"code", error.code}, {"message", error.what()}, {"field", ""}});
 }
 
 void QueuedRenderService::draw(Job& job, const std::set<std::string>& wants, Crewman& worker) {
@@ -108,52 +146,43 @@ ReferencePictures QueuedRenderService::reference_for(Job& job, Crewman& worker) 
   throw Error("internal", "the reference was drawn but could not be kept: is the disk full?");
 }
 
-/// Runs a task, once more on a new worker where the first died at it.
+/// Runs a task. Throws WorkerLost where the worker died at it.
 Message QueuedRenderService::run(Job& job, const Message& task, Crewman& worker, double from,
                                  double to) {
   const auto progress = [&](double value) {
     const Lock lock(mutex_);
     job.record.progress = from + (to - from) * value;
-    changed_.notify_all();
+    job.moved.notify_all();
   };
-  const auto cancelled = [&] {
+  {
     const Lock lock(mutex_);
-    return job.cancelled;
-  };
-  std::string why;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    if (!worker || !worker->alive()) {
-      worker.reset();
-      worker = crew_.start();
-      if (!worker) {
-        why = crew_.trouble();
-        break;
-      }
-    }
-    try {
-      Message result = worker->run(task, options_.deadline_s, progress, cancelled);
-      crew_.succeeded();
-      const Lock lock(mutex_);
-      ++counters_["rendered"];
-      return result;
-    } catch (const WorkerLost& lost) {
-      crew_.ended();
-      crew_.failed(lost.what());
-      why = lost.what();
-    } catch (const WorkCancelled&) {
-      crew_.ended();
-      throw;
-    } catch (const Error& error) {
-      if (worker->alive()) throw;  // the request is at fault, the worker is fine
-      crew_.ended();
-      if (error.code != "device") throw;
-      crew_.failed(error.what());
-      why = error.what();
-    }
-    const Lock lock(mutex_);
-    ++counters_["retries"];
+    job.task = task.body.at("task").at("id");
+    if (deaths_.refuses(job.task))
+      throw unsupported(
+          "what this is measured against ended the renderer twice; it is refused "
+          "until the server is started again");
   }
-  throw device_error("the renderer failed twice at this picture: " + why);
+  try {
+    Message result =
+        worker->run(task, options_.deadline_s, progress, [&] { return job.cancelled.load(); });
+    crew_.succeeded();
+    const Lock lock(mutex_);
+    ++counters_["rendered"];
+    return result;
+  } catch (const WorkerLost& lost) {
+    crew_.ended();
+    crew_.failed(lost.what());
+    throw;
+  } catch (const WorkCancelled&) {
+    crew_.ended();
+    throw;
+  } catch (const Error& error) {
+    if (worker->alive()) throw;  // the request is at fault, the worker is fine
+    crew_.ended();
+    if (error.code != "device") throw;
+    crew_.failed(error.what());
+    throw WorkerLost(error.what());
+  }
 }
 
 void QueuedRenderService::keep(const CanonicalRequest& request, const json& device,
@@ -179,17 +208,19 @@ void QueuedRenderService::keep(const CanonicalRequest& request, const json& devi
 
 void QueuedRenderService::finish(const std::shared_ptr<Job>& job, const std::set<std::string>& done,
                                  const std::string& status, const json& error) {
-  const std::string& id = job->record.id;
+  const std::string id = job->record.id;
   const auto found = status == "done" ? stored(id) : std::nullopt;
   const Lock lock(mutex_);
   queue_.finished(*job);
   const bool more = status == "done" && !job->cancelled &&
                     !std::includes(done.begin(), done.end(), job->wants.begin(), job->wants.end());
   if (more) {
-    // Somebody asked for more while it ran.
+    // More was asked for while it ran.
     job->record.status = "queued";
     job->alone = job->wants.contains(want::cost);
     queue_.push(job);
+    job->moved.notify_all();
+    changed_.notify_all();
   } else {
     if (found) {
       job->record = *found;
@@ -200,9 +231,8 @@ void QueuedRenderService::finish(const std::shared_ptr<Job>& job, const std::set
     }
     if (status != "done") ++counters_[status];
     if (status == "failed" && error.at("code") == "deadline") ++counters_["deadlines"];
-    jobs_.erase(id);
+    end(*job);
   }
-  changed_.notify_all();
 }
 
 }  // namespace penumbra::server

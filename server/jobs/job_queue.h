@@ -1,10 +1,14 @@
 #pragma once
 
+#include <atomic>
+#include <condition_variable>
 #include <deque>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/jobs/canonical_request.h"
 #include "server/jobs/render_service.h"
@@ -16,48 +20,48 @@ struct Job {
   CanonicalRequest request;
   std::set<std::string> wants;  ///< grows while it waits; what joins while it runs is done after
   RenderRecord record;
-  unsigned interest = 0;  ///< submitters that have not cancelled
-  bool cancelled = false;
+  std::vector<Submitter> submitters;        ///< those that have not released it
+  Priority priority = Priority::anonymous;  ///< the highest of them
+  std::string client;                       ///< in whose turn it is taken
+  std::string task;  ///< id of what its worker draws: the render itself or its reference
+  std::atomic<bool> cancelled = false;
   bool alone = false;  ///< a measurement: nothing else may run beside it
+  bool over = false;
+  std::condition_variable moved;  ///< status or progress changed
+  std::condition_variable ended;  ///< `over` was set
 };
 
-/// First come, first served; a measurement waits until nothing runs and then runs alone. The queue
-/// has no lock of its own: its owner calls under one.
+/// Jobs of a higher priority first; within one, clients take turns and each one's own come in
+/// order. A measurement waits until nothing runs and then runs alone. The queue has no lock of its
+/// own: its owner calls under one.
 class JobQueue {
  public:
-  void push(std::shared_ptr<Job> job) { waiting_.push_back(std::move(job)); }
+  void push(std::shared_ptr<Job> job);
+  /// Before all others of its priority: one that was begun before.
+  void push_front(std::shared_ptr<Job> job);
 
   /// The next job that may run now, marked as running; null where none may.
-  std::shared_ptr<Job> take() {
-    if (waiting_.empty() || alone_) return nullptr;
-    if (waiting_.front()->alone && running_ > 0) return nullptr;
-    std::shared_ptr<Job> job = std::move(waiting_.front());
-    waiting_.pop_front();
-    ++running_;
-    alone_ = job->alone;
-    return job;
-  }
+  std::shared_ptr<Job> take();
+  void finished(const Job& job);
 
-  void finished(const Job&) {
-    --running_;
-    alone_ = false;
-  }
+  bool remove(const Job& job);
+  std::vector<std::shared_ptr<Job>> take_all();
 
-  bool remove(const Job& job) {
-    for (auto it = waiting_.begin(); it != waiting_.end(); ++it) {
-      if (it->get() != &job) continue;
-      waiting_.erase(it);
-      return true;
-    }
-    return false;
-  }
-
-  std::deque<std::shared_ptr<Job>> take_all() { return std::exchange(waiting_, {}); }
-  std::size_t waiting() const { return waiting_.size(); }
+  std::size_t waiting() const;
+  std::size_t waiting(Priority priority) const;
   unsigned running() const { return running_; }
 
  private:
-  std::deque<std::shared_ptr<Job>> waiting_;
+  /// One client's jobs.
+  struct Line {
+    std::string client;
+    std::deque<std::shared_ptr<Job>> jobs;
+  };
+  using Lines = std::deque<Line>;  ///< the front one's turn is next
+
+  Line& line_of(const Job& job, bool front);
+
+  std::map<Priority, Lines, std::greater<>> waiting_;  ///< no line is empty
   unsigned running_ = 0;
   bool alone_ = false;
 };

@@ -17,14 +17,35 @@ using std::chrono::steady_clock;
 constexpr std::size_t max_line = std::size_t{64} << 20;
 constexpr int poll_ms = 20;
 
-void write_all(int descriptor, const std::string& bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw std::system_error(errno, std::generic_category(), "writing to a worker");
-    done += static_cast<std::size_t>(count);
+/// Waits for `events`, at most until `deadline` and the next look at `stop`; returns what ended the
+/// wait, or `message` where it is worth trying.
+Exchange await(int descriptor, short events, steady_clock::time_point deadline,
+               const std::function<bool()>& stop, bool& ready) {
+  ready = false;
+  if (stop && stop()) return Exchange::stopped;
+  const auto left = deadline - steady_clock::now();
+  if (left <= steady_clock::duration::zero()) return Exchange::deadline;
+  pollfd waiting{descriptor, events, 0};
+  const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(left).count() + 1;
+  const int found = ::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left_ms, poll_ms)));
+  if (found < 0 && errno != EINTR) return Exchange::closed;
+  ready = found > 0;
+  return Exchange::message;
+}
+
+/// Writes all of `bytes`; a descriptor that would block is waited for.
+Exchange write_all(int descriptor, std::string_view bytes, steady_clock::time_point deadline,
+                   const std::function<bool()>& stop) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    if (count >= 0 || errno == EINTR) continue;
+    if (errno != EAGAIN) return Exchange::closed;
+    bool ready = false;
+    const Exchange outcome = await(descriptor, POLLOUT, deadline, stop, ready);
+    if (outcome != Exchange::message) return outcome;
   }
+  return Exchange::message;
 }
 
 /// Sizes that a head line announces, or nothing where it makes no sense.
@@ -45,7 +66,8 @@ std::optional<std::size_t> announced_bytes(const json& head) {
 
 }  // namespace
 
-void write_message(int descriptor, const Message& message) {
+Exchange write_message(int descriptor, const Message& message, steady_clock::time_point deadline,
+                       const std::function<bool()>& stop) {
   json head = message.body;
   if (!message.blobs.empty()) {
     json list = json::array();
@@ -53,8 +75,17 @@ void write_message(int descriptor, const Message& message) {
       list.push_back({{"name", name}, {"bytes", bytes.size()}});
     head["blobs"] = std::move(list);
   }
-  write_all(descriptor, scenes::json_text(head) + "\n");
-  for (const auto& [name, bytes] : message.blobs) write_all(descriptor, bytes);
+  const std::string line = scenes::json_text(head) + "\n";
+  Exchange outcome = write_all(descriptor, line, deadline, stop);
+  for (auto blob = message.blobs.begin();
+       blob != message.blobs.end() && outcome == Exchange::message; ++blob)
+    outcome = write_all(descriptor, blob->second, deadline, stop);
+  return outcome;
+}
+
+void write_message(int descriptor, const Message& message) {
+  if (write_message(descriptor, message, steady_clock::time_point::max(), {}) != Exchange::message)
+    throw std::system_error(errno, std::generic_category(), "writing to a worker");
 }
 
 bool MessageReader::take(Message& message) {
@@ -87,29 +118,24 @@ bool MessageReader::take(Message& message) {
   return true;
 }
 
-MessageReader::Outcome MessageReader::read(Message& message, steady_clock::time_point deadline,
-                                           const std::function<bool()>& stop) {
+Exchange MessageReader::read(Message& message, steady_clock::time_point deadline,
+                             const std::function<bool()>& stop) {
   std::string piece(std::size_t{1} << 16, '\0');
   try {
     while (!take(message)) {
-      if (stop && stop()) return Outcome::stopped;
-      const auto left = deadline - steady_clock::now();
-      if (left <= steady_clock::duration::zero()) return Outcome::deadline;
-      pollfd waiting{descriptor_, POLLIN, 0};
-      const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(left).count() + 1;
-      const int ready =
-          ::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left_ms, poll_ms)));
-      if (ready < 0 && errno != EINTR) return Outcome::closed;
-      if (ready <= 0) continue;
+      bool ready = false;
+      const Exchange outcome = await(descriptor_, POLLIN, deadline, stop, ready);
+      if (outcome != Exchange::message) return outcome;
+      if (!ready) continue;
       const ssize_t count = ::read(descriptor_, piece.data(), piece.size());
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return Outcome::closed;
+      if (count <= 0) return Exchange::closed;
       buffer_.append(piece.data(), static_cast<std::size_t>(count));
     }
   } catch (const std::exception&) {
-    return Outcome::garbled;  // not JSON, no object, sizes without sense: no worker of ours
+    return Exchange::garbled;  // not JSON, no object, sizes without sense: no worker of ours
   }
-  return Outcome::message;
+  return Exchange::message;
 }
 
 }  // namespace penumbra::server

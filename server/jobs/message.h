@@ -21,19 +21,27 @@ struct Message {
 /// Largest message that is read; the largest picture with four float channels passes.
 inline constexpr std::size_t max_message_bytes = std::size_t{5} << 30;
 
-/// Writes all of it. Throws std::system_error where the other end is gone.
+/// How an exchange ended: the whole message passed, or why it did not.
+enum class Exchange { message, closed, deadline, stopped, garbled };
+
+/// Writes all of it to a descriptor that blocks. Throws std::system_error where the other end is
+/// gone.
 void write_message(int descriptor, const Message& message);
+
+/// Writes to a descriptor that does not block, until `deadline`; asks `stop` every few
+/// milliseconds. What was written of a message that did not pass whole is of no use to the reader.
+Exchange write_message(int descriptor, const Message& message,
+                       std::chrono::steady_clock::time_point deadline,
+                       const std::function<bool()>& stop);
 
 /// Reads messages from a pipe.
 class MessageReader {
  public:
   explicit MessageReader(int descriptor) : descriptor_(descriptor) {}
 
-  enum class Outcome { message, closed, deadline, stopped, garbled };
-
   /// Waits for a whole message until `deadline`; asks `stop` every few milliseconds.
-  Outcome read(Message& message, std::chrono::steady_clock::time_point deadline,
-               const std::function<bool()>& stop = {});
+  Exchange read(Message& message, std::chrono::steady_clock::time_point deadline,
+                const std::function<bool()>& stop = {});
 
  private:
   bool take(Message& message);  ///< true when the buffer held a whole message

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "renderer/error.h"
+#include "server/jobs/memory_budget.h"
 
 namespace penumbra::server {
 namespace {
@@ -14,12 +15,18 @@ using std::chrono::steady_clock;
 
 constexpr std::size_t remembered_failures = 1024;
 
+/// Submitters of one render that are told apart; it is drawn for the others in any case.
+constexpr std::size_t most_submitters = 1000;
+
+/// How long a first request waits for the first worker to tell what its device can hold, seconds.
+constexpr double device_patience_s = 10.0;
+
 Error busy(const std::string& message) {
   return {"busy", message};
 }
 
-bool is_over(const RenderRecord& record) {
-  return record.status != "queued" && record.status != "running";
+bool share_one(const std::set<std::string>& a, const std::set<std::string>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const std::string& key) { return b.contains(key); });
 }
 
 steady_clock::time_point after(double seconds) {
@@ -35,6 +42,8 @@ WorkerCommand command_of(const RenderServiceOptions& options) {
   command.arguments.insert(command.arguments.end(), {"--data", options.data.string()});
   if (!options.device.empty())
     command.arguments.insert(command.arguments.end(), {"--device", options.device});
+  command.arguments.insert(command.arguments.end(),
+                           {"--memory-limit", std::to_string(worker_memory(options.workers))});
   command.arguments.insert(command.arguments.end(),
                            {"--checkpoint-s", std::to_string(options.checkpoint_s)});
   if (options.validation) command.arguments.emplace_back("--validation");
@@ -91,37 +100,63 @@ std::set<std::string> QueuedRenderService::missing(const std::string& id,
   return lacking;
 }
 
-RenderRecord QueuedRenderService::submit(const json& request) {
+RenderRecord QueuedRenderService::submit(const json& request, const Submitter& who) {
   CanonicalRequest canonical = read_request(request, context_);
   std::set<std::string> wants{want::image};
   if (canonical.measure) wants.insert({want::cost, want::quality, want::error_map});
-  return enqueue(std::move(canonical), wants);
+  return enqueue(std::move(canonical), wants, who);
+}
+
+std::shared_ptr<Job> QueuedRenderService::job_of(const std::string& id) {
+  const auto found = jobs_.find(id);
+  return found == jobs_.end() ? nullptr : found->second;
+}
+
+/// Throws for what would not be drawn: there is no worker, the device cannot hold it, or it ended
+/// two workers.
+void QueuedRenderService::check_admissible(const CanonicalRequest& request,
+                                           const std::set<std::string>& wants) {
+  if (const std::string why = crew_.trouble(); !why.empty()) throw busy(why);
+  {
+    const Lock lock(mutex_);
+    if (deaths_.refuses(request.id))
+      throw unsupported(
+          "this picture ended the renderer twice; it is refused until the server is "
+          "started again");
+  }
+  check_fits(request, wants, crew_.limits(device_patience_s));
+  if (const std::string why = crew_.trouble(); !why.empty()) throw busy(why);
 }
 
 RenderRecord QueuedRenderService::enqueue(CanonicalRequest request,
-                                          const std::set<std::string>& wants) {
+                                          const std::set<std::string>& wants,
+                                          const Submitter& who) {
   const std::set<std::string> lacking = missing(request.id, wants, request.frames);
   const auto known = stored(request.id);
+  const bool drawn = lacking.empty() && known;
+  const auto in_flight = [&] {
+    const Lock lock(mutex_);
+    return jobs_.contains(request.id);
+  };
+  if (!drawn && !in_flight()) check_admissible(request, wants);
 
   const Lock lock(mutex_);
-  if (const auto found = jobs_.find(request.id); found != jobs_.end()) {
-    Job& job = *found->second;
-    ++job.interest;
+  if (const auto job = job_of(request.id)) {
     ++counters_["shared"];
-    job.wants.insert(wants.begin(), wants.end());
-    if (request.frames > 0) job.request.frames = request.frames;
-    if (job.record.status == "queued") job.alone = job.wants.contains(want::cost);
-    return job.record;
+    job->wants.insert(wants.begin(), wants.end());
+    if (request.frames > 0) job->request.frames = request.frames;
+    if (job->record.status == "queued") job->alone = job->wants.contains(want::cost);
+    join(*job, who);
+    return job->record;
   }
-  if (lacking.empty() && known) {
+  if (drawn) {
     ++counters_["cache_hits"];
     over_.erase(request.id);  // an old failure to measure it is no longer what stands there
     return *known;
   }
   if (draining_) throw busy("the server is shutting down");
-  if (queue_.waiting() >= options_.queue_limit)
+  if (queue_.waiting(who.priority) >= options_.queue_limit)
     throw busy("the queue is full (" + std::to_string(options_.queue_limit) + " renders wait)");
-  if (const std::string trouble = crew_.trouble(); !trouble.empty()) throw busy(trouble);
 
   ++counters_["cache_misses"];
   auto job = std::make_shared<Job>();
@@ -132,13 +167,28 @@ RenderRecord QueuedRenderService::enqueue(CanonicalRequest request,
   job->record.request = request.request;
   job->wants = wants;
   job->alone = wants.contains(want::cost);
-  job->interest = 1;
+  job->submitters = {who};
+  job->priority = who.priority;
+  job->client = who.client;
   job->request = std::move(request);
   jobs_[job->record.id] = job;
   over_.erase(job->record.id);
   queue_.push(job);
   changed_.notify_all();
   return job->record;
+}
+
+/// Adds a submitter, and moves what waits to the turn of one that comes before the others.
+void QueuedRenderService::join(Job& job, const Submitter& who) {
+  const bool known =
+      std::any_of(job.submitters.begin(), job.submitters.end(),
+                  [&](const Submitter& each) { return share_one(who.keys, each.keys); });
+  if (!known && job.submitters.size() < most_submitters) job.submitters.push_back(who);
+  if (who.priority <= job.priority) return;
+  const bool waits = queue_.remove(job);
+  job.priority = who.priority;
+  job.client = who.client;
+  if (waits) queue_.push(jobs_.at(job.record.id));
 }
 
 std::optional<RenderRecord> QueuedRenderService::stored(const std::string& id) {
@@ -156,69 +206,84 @@ std::optional<RenderRecord> QueuedRenderService::stored(const std::string& id) {
   return found;
 }
 
-std::optional<RenderRecord> QueuedRenderService::find_locked(const std::string& id) {
-  if (const auto job = jobs_.find(id); job != jobs_.end()) return job->second->record;
-  if (const auto over = over_.find(id); over != over_.end()) return over->second;
-  return stored(id);
-}
-
 std::optional<RenderRecord> QueuedRenderService::find(const std::string& id) {
-  const Lock lock(mutex_);
-  return find_locked(id);
+  {
+    const Lock lock(mutex_);
+    if (const auto job = job_of(id)) return job->record;
+    if (const auto over = over_.find(id); over != over_.end()) return over->second;
+  }
+  return stored(id);  // reads the disk
 }
 
 std::optional<RenderRecord> QueuedRenderService::wait(const std::string& id, double seconds) {
-  const auto deadline = after(seconds);
-  Lock lock(mutex_);
-  while (true) {
-    auto record = find_locked(id);
-    if (!record || is_over(*record)) return record;
-    if (changed_.wait_until(lock, deadline) == std::cv_status::timeout) return find_locked(id);
+  {
+    Lock lock(mutex_);
+    if (const auto job = job_of(id)) {
+      job->ended.wait_until(lock, after(seconds), [&] { return job->over; });
+      return job->record;
+    }
   }
+  return find(id);
 }
 
 std::optional<RenderRecord> QueuedRenderService::wait_change(const std::string& id,
                                                              const RenderRecord& seen,
                                                              double seconds) {
-  const auto deadline = after(seconds);
-  Lock lock(mutex_);
-  while (true) {
-    auto record = find_locked(id);
-    if (!record || record->status != seen.status || record->progress != seen.progress)
-      return record;
-    if (changed_.wait_until(lock, deadline) == std::cv_status::timeout) return find_locked(id);
+  {
+    Lock lock(mutex_);
+    if (const auto job = job_of(id)) {
+      job->moved.wait_until(lock, after(seconds), [&] {
+        return job->over || job->record.status != seen.status ||
+               job->record.progress != seen.progress;
+      });
+      return job->record;
+    }
   }
+  return find(id);
 }
 
-bool QueuedRenderService::cancel(const std::string& id) {
+bool QueuedRenderService::release(const std::string& id, const std::set<std::string>& keys) {
   const Lock lock(mutex_);
-  const auto found = jobs_.find(id);
-  if (found == jobs_.end()) return find_locked(id).has_value();
-  const std::shared_ptr<Job> job = found->second;
-  if (job->interest > 0) --job->interest;
-  if (job->interest > 0) return true;
+  const auto job = job_of(id);
+  if (!job) return false;
+  const auto released = std::erase_if(job->submitters, [&](const Submitter& each) {
+    return share_one(keys, each.keys) || share_one(keys, each.further_keys);
+  });
+  if (released == 0 || !job->submitters.empty()) return released > 0;
   job->cancelled = true;  // where it runs, its thread sees this within milliseconds
   if (queue_.remove(*job)) {
     job->record.status = "cancelled";
-    remember(job->record);
-    jobs_.erase(id);
     ++counters_["cancelled"];
+    remember(job->record);
+    end(*job);
   }
-  changed_.notify_all();
   return true;
 }
 
-std::optional<std::string> QueuedRenderService::artefact(const std::string& id,
-                                                         const std::string& name) {
+/// The job is done with, whatever became of it.
+void QueuedRenderService::end(Job& job) {
+  job.over = true;
+  job.moved.notify_all();
+  job.ended.notify_all();
+  changed_.notify_all();
+  jobs_.erase(std::string(job.record.id));
+}
+
+SharedBytes QueuedRenderService::stored_artefact(const std::string& id, const std::string& name) {
+  const auto& names = artefact_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) return nullptr;
+  SharedBytes bytes = store_.read(id, name);
+  if (!bytes) return nullptr;
+  const Lock lock(mutex_);
+  ++counters_["cache_hits"];
+  return bytes;
+}
+
+std::optional<RenderRecord> QueuedRenderService::submit_artefact(const std::string& id,
+                                                                 const std::string& name,
+                                                                 const Submitter& who) {
   const auto& names = artefact_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) return {};
-  if (const auto bytes = store_.read(id, name)) {
-    const Lock lock(mutex_);
-    ++counters_["cache_hits"];
-    return *bytes;
-  }
-
-  // The render is known but this file of it is not there, or was damaged: have it made.
   const auto known = find(id);
   if (!known || known->status == "failed" || known->status == "cancelled") return {};
   json request = known->request;
@@ -226,15 +291,7 @@ std::optional<std::string> QueuedRenderService::artefact(const std::string& id,
   for (const char* derived : {"renderer", "scene_hash", "device"}) request.erase(derived);
   CanonicalRequest canonical = read_request(request, context_);
   if (canonical.id != id) return {};  // scene or renderer changed since: that picture is history
-  enqueue(std::move(canonical), {name});
-  const auto made = wait(id, options_.deadline_s * 2.0);
-  if (!made) return {};
-  if (!made->error.is_null())
-    throw Error(made->error.value("code", "internal"), made->error.value("message", ""),
-                made->error.value("field", ""));
-  const auto bytes = store_.read(id, name);
-  if (!bytes) return {};
-  return *bytes;
+  return enqueue(std::move(canonical), {name}, who);
 }
 
 void QueuedRenderService::remember(const RenderRecord& record) {
@@ -249,7 +306,9 @@ void QueuedRenderService::remember(const RenderRecord& record) {
 json QueuedRenderService::statistics() {
   json all = crew_.statistics();
   const ArtefactStore::Statistics cache = store_.statistics();
+  all["trouble"] = crew_.trouble();
   all["cache_renders"] = cache.renders;
+  all["cache_records_loaded"] = cache.loaded;
   all["cache_bytes"] = cache.bytes;
   all["cache_bytes_limit"] = options_.cache_bytes;
   all["cache_damaged"] = cache.damaged;
@@ -258,6 +317,10 @@ json QueuedRenderService::statistics() {
   const Lock lock(mutex_);
   all["workers"] = threads_.size();
   all["queued"] = queue_.waiting();
+  all["queued_publication"] = queue_.waiting(Priority::publication);
+  all["queued_researcher"] = queue_.waiting(Priority::researcher);
+  all["queued_anonymous"] = queue_.waiting(Priority::anonymous);
+  all["refused_pictures"] = deaths_.refused();
   all["queue_limit"] = options_.queue_limit;
   all["running"] = queue_.running();
   all["draining"] = draining_;
@@ -271,11 +334,10 @@ void QueuedRenderService::end_waiting(const Error& error) {
   for (const auto& job : queue_.take_all()) {
     job->record.status = "failed";
     job->record.error = {{"code", error.code}, {"message", error.what()}, {"field", error.field}};
-    remember(job->record);
-    jobs_.erase(job->record.id);
     ++counters_["failed"];
+    remember(job->record);
+    end(*job);
   }
-  changed_.notify_all();
 }
 
 void QueuedRenderService::drain(double deadline_s) {
@@ -291,6 +353,8 @@ void QueuedRenderService::drain(double deadline_s) {
   crew_.stop();
   for (std::thread& thread : threads_)
     if (thread.joinable()) thread.join();
+  const Lock lock(mutex_);
+  end_waiting(busy("the server is shutting down"));  // what a worker died at, and went back
 }
 
 std::unique_ptr<RenderService> make_render_service(const RenderServiceOptions& options) {

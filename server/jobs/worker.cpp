@@ -15,6 +15,7 @@
 #include "renderer/error.h"
 #include "server/jobs/canonical_request.h"
 #include "server/jobs/drawing_version.h"
+#include "server/jobs/memory_budget.h"
 #include "server/jobs/task.h"
 
 namespace penumbra::server {
@@ -35,7 +36,6 @@ int claim_output() {
 
 void limit_memory(std::uint64_t allowance) {
   const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  if (allowance == 0) allowance = page * static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   const rlimit limit{pages * page + allowance, pages * page + allowance};
@@ -101,9 +101,11 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
 
 [[noreturn]] void serve_tasks(const WorkerOptions& options, int channel) {
   std::optional<Renderer> renderer;
+  const std::uint64_t allowance =
+      options.memory_limit > 0 ? options.memory_limit : worker_memory(1);
   try {
     renderer.emplace(RendererOptions{options.device, options.validation});
-    limit_memory(options.memory_limit);
+    limit_memory(allowance);
   } catch (const Error& error) {
     write_message(channel, {error_body(error, true), {}});
     end(1);
@@ -111,15 +113,15 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
     write_message(channel, {error_body(device_error(error.what()), true), {}});
     end(1);
   }
-  write_message(
-      channel,
-      {{{"hello",
-         {{"renderer", drawing_version()}, {"device", device_to_json(renderer->device())}}}},
-       {}});
+  write_message(channel, {{{"hello",
+                            {{"renderer", drawing_version()},
+                             {"device", device_to_json(renderer->device())},
+                             {"limits", limits_to_json(limits_within(*renderer, allowance))}}}},
+                          {}});
 
   MessageReader reader(STDIN_FILENO);
   Message message;
-  while (reader.read(message, steady_clock::time_point::max()) == MessageReader::Outcome::message) {
+  while (reader.read(message, steady_clock::time_point::max()) == Exchange::message) {
     try {
       const Message reply = answer(*renderer, message, options, channel);
       write_message(channel, reply);

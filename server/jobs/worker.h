@@ -12,14 +12,14 @@ struct WorkerOptions {
   std::string device;
   std::filesystem::path data;
   bool validation = false;
-  /// Address space that drawing may add once the device is open, bytes; 0: as much as the machine
-  /// has memory. Drivers map far more than they use, hence counted from there.
+  /// Address space that drawing may add once the device is open, bytes; 0: the share of the only
+  /// worker. Drivers map far more than they use, hence counted from there.
   std::uint64_t memory_limit = 0;
   double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
 };
 
 /// The child process that owns a Vulkan device. Protocol (message.h) on standard input and output:
-///   worker: {"hello":{"renderer","device"}}  or  {"error":{..},"fatal":true} and the end
+///   worker: {"hello":{"renderer","device","limits"}}  or  {"error":{..},"fatal":true} and the end
 ///   server: {"task":{"request","id","wants","frames"},"reference":{"id","noise_rms_y"}} and the
 ///           reference's files
 ///   worker: {"progress":0.5} ..., then {"done":{"cost","quality","noise_rms_y","notes"}} and

@@ -24,15 +24,22 @@ std::chrono::steady_clock::duration WorkerCrew::pause() const {
 std::unique_ptr<WorkerProcess> WorkerCrew::start() {
   {
     std::unique_lock lock(mutex_);
-    if (stopped_.wait_for(lock, pause(), [this] { return stopping_; })) return nullptr;
+    if (changed_.wait_for(lock, pause(), [this] { return stopping_; })) return nullptr;
   }
   try {
-    auto process = std::make_unique<WorkerProcess>(command_);
+    auto process = std::make_unique<WorkerProcess>(command_, [this] {
+      const std::lock_guard lock(mutex_);
+      return stopping_;
+    });
     const std::lock_guard lock(mutex_);
     ++alive_;
     ++started_;
     device_ = process->device();
+    limits_ = process->limits();
+    changed_.notify_all();
     return process;
+  } catch (const WorkCancelled&) {
+    return nullptr;
   } catch (const std::exception& error) {
     failed(error.what());
     return nullptr;
@@ -50,6 +57,7 @@ void WorkerCrew::failed(const std::string& why) {
   ++failures_;
   ++deaths_;
   last_failure_ = why;
+  changed_.notify_all();
 }
 
 void WorkerCrew::ended() {
@@ -60,18 +68,29 @@ void WorkerCrew::ended() {
 void WorkerCrew::stop() {
   const std::lock_guard lock(mutex_);
   stopping_ = true;
-  stopped_.notify_all();
+  changed_.notify_all();
+}
+
+bool WorkerCrew::breaker_open() const {
+  return failures_ >= failures_before_breaker && alive_ == 0;
 }
 
 std::string WorkerCrew::trouble() {
   const std::lock_guard lock(mutex_);
-  if (failures_ < failures_before_breaker || alive_ > 0) return {};
+  if (!breaker_open()) return {};
   return "no renderer is running, the last one failed: " + last_failure_;
 }
 
 nlohmann::json WorkerCrew::device() {
   const std::lock_guard lock(mutex_);
   return device_;
+}
+
+DeviceLimits WorkerCrew::limits(double patience_s) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, std::chrono::duration<double>(patience_s),
+                    [this] { return stopping_ || started_ > 0 || breaker_open(); });
+  return limits_;
 }
 
 nlohmann::json WorkerCrew::statistics() {

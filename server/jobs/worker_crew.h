@@ -18,8 +18,8 @@ class WorkerCrew {
  public:
   explicit WorkerCrew(WorkerCommand command) : command_(std::move(command)) {}
 
-  /// A started worker; waits while the breaker is open. Null once stop() was called or where the
-  /// worker did not start: trouble() tells why.
+  /// A started worker; waits while the breaker is open, so never within a job. Null once stop() was
+  /// called or where the worker did not start: trouble() tells why.
   std::unique_ptr<WorkerProcess> start();
 
   /// A worker finished a task: the driver works.
@@ -35,14 +35,19 @@ class WorkerCrew {
   std::string trouble();
 
   nlohmann::json device();  ///< of the last hello, or null
+
+  /// Of the last hello. Waits for the first one up to `patience_s` seconds or until there is
+  /// trouble; nothing is known then.
+  DeviceLimits limits(double patience_s);
   nlohmann::json statistics();
 
  private:
   std::chrono::steady_clock::duration pause() const;
+  bool breaker_open() const;  ///< and no worker lives; under the mutex
 
   WorkerCommand command_;
   std::mutex mutex_;
-  std::condition_variable stopped_;
+  std::condition_variable changed_;
   bool stopping_ = false;
   unsigned alive_ = 0;
   unsigned failures_ = 0;  ///< in a row
@@ -50,6 +55,7 @@ class WorkerCrew {
   std::uint64_t deaths_ = 0;
   std::string last_failure_;
   nlohmann::json device_;
+  DeviceLimits limits_;
 };
 
 }  // namespace penumbra::server

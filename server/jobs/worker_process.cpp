@@ -12,6 +12,7 @@
 
 #include "renderer/error.h"
 #include "server/jobs/drawing_version.h"
+#include "server/jobs/memory_budget.h"
 
 extern char** environ;
 
@@ -105,11 +106,14 @@ std::string end_in_words(int status) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const WorkerCommand& command) {
+WorkerProcess::WorkerProcess(const WorkerCommand& command, const std::function<bool()>& cancelled) {
   Pipe to_worker;
   Pipe from_worker;
   process_ = spawn(command, to_worker.read_end, from_worker.write_end);
   input_ = std::exchange(to_worker.write_end, -1);
+  // Its reader may stop reading: writing must then end at the deadline. The worker's end, another
+  // description, still blocks.
+  ::fcntl(input_, F_SETFL, O_NONBLOCK);
   output_ = std::exchange(from_worker.read_end, -1);
   reader_ = std::make_unique<MessageReader>(output_);
   // The worker's own ends must be closed here, or its death would not be seen.
@@ -117,12 +121,13 @@ WorkerProcess::WorkerProcess(const WorkerCommand& command) {
   ::close(std::exchange(from_worker.write_end, -1));
 
   try {
-    const Message hello = read(after(command.start_s), {});
+    const Message hello = read(after(command.start_s), cancelled);
     if (hello.body.contains("error")) raise(hello.body);
     if (!hello.body.contains("hello")) lost("did not say hello");
     if (hello.body["hello"].value("renderer", "") != drawing_version())
       lost("is of another version than the server");
     device_ = hello.body["hello"].value("device", json(nullptr));
+    limits_ = limits_from_json(hello.body["hello"].value("limits", json::object()));
   } catch (...) {
     kill();
     throw;
@@ -142,6 +147,14 @@ void WorkerProcess::kill() {
   }
   if (input_ >= 0) ::close(std::exchange(input_, -1));
   if (output_ >= 0) ::close(std::exchange(output_, -1));
+}
+
+std::optional<std::string> WorkerProcess::died_idle() {
+  int status = 0;
+  if (process_ <= 0 || ::waitpid(process_, &status, WNOHANG) != process_) return {};
+  process_ = -1;
+  kill();
+  return "the worker " + end_in_words(status);
 }
 
 void WorkerProcess::lost(const std::string& during) {
@@ -169,36 +182,37 @@ void WorkerProcess::raise(const json& body) {
               error.value("field", ""));
 }
 
-Message WorkerProcess::read(steady_clock::time_point deadline,
-                            const std::function<bool()>& cancelled) {
-  Message message;
-  switch (reader_->read(message, deadline, cancelled)) {
-    case MessageReader::Outcome::message:
-      return message;
-    case MessageReader::Outcome::stopped:
+void WorkerProcess::require_message(Exchange outcome) {
+  switch (outcome) {
+    case Exchange::message:
+      return;
+    case Exchange::stopped:
       kill();
       throw WorkCancelled();
-    case MessageReader::Outcome::deadline:
+    case Exchange::deadline:
       kill();
       throw Error("deadline", "the renderer did not answer in time and was stopped");
-    case MessageReader::Outcome::garbled:
+    case Exchange::garbled:
       lost("does not keep to the protocol");
-    case MessageReader::Outcome::closed:
+    case Exchange::closed:
       break;
   }
   lost("is gone");
+}
+
+Message WorkerProcess::read(steady_clock::time_point deadline,
+                            const std::function<bool()>& cancelled) {
+  Message message;
+  require_message(reader_->read(message, deadline, cancelled));
+  return message;
 }
 
 Message WorkerProcess::run(const Message& task, double deadline_s,
                            const std::function<void(double)>& progress,
                            const std::function<bool()>& cancelled) {
   if (!alive()) throw WorkerLost("the worker is not running");
-  try {
-    write_message(input_, task);
-  } catch (const std::system_error&) {
-    lost("took no task");
-  }
   const auto deadline = after(deadline_s);
+  require_message(write_message(input_, task, deadline, cancelled));
   while (true) {
     Message message = read(deadline, cancelled);
     if (message.body.contains("error")) raise(message.body);

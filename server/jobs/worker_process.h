@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/render.h"
 #include "server/jobs/message.h"
 
 namespace penumbra::server {
@@ -37,13 +38,15 @@ struct WorkerCommand {
 /// a worker together with the thread that started it.
 class WorkerProcess {
  public:
-  /// Starts it and waits for its hello. Throws WorkerLost, or the Error that the worker told.
-  explicit WorkerProcess(const WorkerCommand& command);
+  /// Starts it and waits for its hello; `cancelled` is asked often. Throws WorkerLost,
+  /// WorkCancelled, or the Error that the worker told.
+  WorkerProcess(const WorkerCommand& command, const std::function<bool()>& cancelled);
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   const nlohmann::json& device() const { return device_; }
+  const DeviceLimits& limits() const { return limits_; }
 
   /// Sends a task and waits for its answer: the body under `done`, and the files. `progress` gets
   /// 0..1; `cancelled` is asked often. Throws the worker's Error, Error `deadline` (the process is
@@ -54,9 +57,14 @@ class WorkerProcess {
   /// False once it was killed or said that it ends; make a new one then.
   bool alive() const { return process_ > 0; }
 
+  /// How it ended where it did so without a task; it is not alive then.
+  std::optional<std::string> died_idle();
+
  private:
   void kill();
   [[noreturn]] void lost(const std::string& during);
+  /// What became of an exchange: returns where the message passed, else ends the worker and throws.
+  void require_message(Exchange outcome);
   Message read(std::chrono::steady_clock::time_point deadline,
                const std::function<bool()>& cancelled);
   [[noreturn]] void raise(const nlohmann::json& body);
@@ -66,6 +74,7 @@ class WorkerProcess {
   int output_ = -1;  ///< from the worker
   std::unique_ptr<MessageReader> reader_;
   nlohmann::json device_;
+  DeviceLimits limits_;
 };
 
 }  // namespace penumbra::server

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -18,7 +19,7 @@ namespace penumbra::server::http {
 /// room, `wide` is a bad value; every other is done at once.
 class FakeRenders : public RenderService {
  public:
-  RenderRecord submit(const nlohmann::json& request) override {
+  RenderRecord submit(const nlohmann::json& request, const Submitter& who) override {
     const std::lock_guard lock(mutex);
     if (!request.contains("scene")) throw bad_value("scene", "is required");
     const auto scene = request.at("scene").get<std::string>();
@@ -28,7 +29,9 @@ class FakeRenders : public RenderService {
     record.request = request;
     record.id = sha256(request.dump()).substr(0, 32);
     ++submitted;
-    if (records.contains(record.id)) return records[record.id];
+    submitters[record.id].push_back(who);
+    if (records.contains(record.id) && records[record.id].status != "cancelled")
+      return records[record.id];
     record.status = scene == "slow" ? "queued" : scene == "broken" ? "failed" : "done";
     record.progress = record.status == "done" ? 1.0 : 0.0;
     record.device = {{"name", "fake"}, {"driver", "1"}, {"type", "cpu"}};
@@ -60,19 +63,33 @@ class FakeRenders : public RenderService {
     return records[id];
   }
 
-  bool cancel(const std::string& id) override {
+  bool release(const std::string& id, const std::set<std::string>& keys) override {
     const std::lock_guard lock(mutex);
-    if (!records.contains(id)) return false;
-    if (records[id].status == "queued") records[id].status = "cancelled";
+    if (!records.contains(id) || is_over(records[id])) return false;
+    auto& all = submitters[id];
+    const auto released = std::erase_if(all, [&](const Submitter& who) {
+      return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
+        return who.keys.contains(key) || who.further_keys.contains(key);
+      });
+    });
+    if (all.empty()) records[id].status = "cancelled";
     changed.notify_all();
-    return true;
+    return released > 0;
   }
 
-  std::optional<std::string> artefact(const std::string& id, const std::string& name) override {
+  SharedBytes stored_artefact(const std::string& id, const std::string& name) override {
     const std::lock_guard lock(mutex);
-    if (!records.contains(id) || name != "image.png") return std::nullopt;
-    return png_of(records[id].request.value("technique", ""));
+    if (!records.contains(id) || records[id].status != "done" || name != "image.png")
+      return nullptr;
+    return std::make_shared<const std::string>(png_of(records[id].request.value("technique", "")));
   }
+
+  std::optional<RenderRecord> submit_artefact(const std::string&, const std::string&,
+                                              const Submitter&) override {
+    return std::nullopt;
+  }
+
+  std::string trouble() override { return in_trouble; }
 
   nlohmann::json statistics() override { return {{"workers", 1}, {"queued", 0}}; }
 
@@ -96,11 +113,19 @@ class FakeRenders : public RenderService {
   }
 
   int submitted = 0;
+  std::string in_trouble;  ///< why nothing can be drawn
+
+  /// Those that have not released a render.
+  std::vector<Submitter> submitters_of(const std::string& id) {
+    const std::lock_guard lock(mutex);
+    return submitters[id];
+  }
 
  private:
   std::mutex mutex;
   std::condition_variable changed;
   std::map<std::string, RenderRecord> records;
+  std::map<std::string, std::vector<Submitter>> submitters;
 };
 
 }  // namespace penumbra::server::http

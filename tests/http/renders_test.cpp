@@ -85,7 +85,7 @@ TEST_F(Renders, BeyondTheQueueAreToldToTryAgain) {
   EXPECT_FALSE(result->get_header_value("Retry-After").empty());
 }
 
-TEST_F(Renders, CanBeCancelled) {
+TEST_F(Renders, CanBeCancelledByTheConnectionThatAsked) {
   const auto id = body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "none"}}), 202,
                           "Render")["id"]
                       .get<std::string>();
@@ -107,18 +107,92 @@ TEST_F(Renders, AreKeptForClientsThatOnlyEndedTheirSending) {
   EXPECT_EQ(half.read(4.0).status(), 200);
 }
 
-TEST_F(Renders, AreCancelledWhenTheClientHangsUp) {
+TEST_F(Renders, CanBeCancelledByTheirLeaseFromAnywhere) {
+  const auto asked =
+      body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "none"}}), 202, "Render");
+  const std::string path = asked["links"]["self"];
+  EXPECT_EQ(asked["links"]["cancel"], path + "?lease=" + asked["lease"].get<std::string>());
+  // It is told to the one who posted, and stands nowhere else.
+  EXPECT_FALSE(body_of(client->Get(path), 200, "Render").contains("lease"));
+  httplib::Client other("127.0.0.1", server->port());
+  EXPECT_EQ(
+      body_of(other.Delete(asked["links"]["cancel"].get<std::string>()), 200, "Render")["status"],
+      "cancelled");
+}
+
+TEST_F(Renders, CanBeCancelledByTheResearcherUnlessTheServerItselfNeedsThem) {
+  const auto asked =
+      body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "none"}}), 202, "Render");
+  const std::string path = asked["links"]["self"];
+  renders->submit(asked["request"], {Priority::publication, "study", {"publication"}, {}});
+  EXPECT_EQ(body_of(researcher->Delete(path), 200, "Render")["status"], "queued");
+  EXPECT_EQ(error_of(researcher->Delete(path), 403), "forbidden");
+  renders->finish(asked["id"]);
+  EXPECT_EQ(body_of(researcher->Delete(path), 200, "Render")["status"], "done");
+}
+
+TEST_F(Renders, AreNotEndedByStrangers) {
+  const auto asked =
+      body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "none"}}), 202, "Render");
+  const std::string path = asked["links"]["self"];
+  {
+    // One waits and hangs up,
+    httplib::Client bystander("127.0.0.1", server->port());
+    bystander.set_read_timeout(0, 200000);
+    EXPECT_FALSE(bystander.Get(path + "?wait_s=30"));
+  }
+  // others delete, with what they can guess.
+  httplib::Client stranger("127.0.0.1", server->port());
+  for (const std::string query :
+       {"", "?lease=", "?lease=researcher", "?lease=connection", "?lease=x"}) {
+    const auto refused = stranger.Delete(path + query);
+    EXPECT_EQ(error_of(refused, 403), "forbidden");
+    EXPECT_EQ(field_of(refused), "lease");
+  }
+  {
+    // One asks for the same picture and hangs up.
+    httplib::Client hasty("127.0.0.1", server->port());
+    hasty.set_read_timeout(0, 200000);
+    EXPECT_FALSE(hasty.Get("/api/v1/image?scene=slow&technique=none"));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(body_of(client->Get(path), 200, "Render")["status"], "queued");
+  renders->finish(asked["id"]);
+  EXPECT_EQ(body_of(client->Get(path), 200, "Render")["status"], "done");
+}
+
+TEST_F(Renders, AreCancelledWhenTheOnlyClientHangsUp) {
   {
     httplib::Client hasty("127.0.0.1", server->port());
     hasty.set_read_timeout(0, 200000);
     EXPECT_FALSE(hasty.Get("/api/v1/image?scene=slow&technique=left"));
   }
-  const auto id = body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "left"}}), 202,
-                          "Render")["id"]
-                      .get<std::string>();
+  // The id of the same request, as the fake makes it.
+  const json request = {{"scene", "slow"}, {"technique", "left"}};
+  const auto id = sha256(request.dump()).substr(0, 32);
   for (int i = 0; i < 50 && renders->find(id)->status != "cancelled"; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_EQ(renders->find(id)->status, "cancelled");
+}
+
+TEST_F(Renders, AreAskedForInTheNameOfWhoCalls) {
+  const json request = {{"scene", "slow"}, {"technique", "none"}};
+  const auto id = body_of(post("/api/v1/renders", request), 202, "Render")["id"].get<std::string>();
+  body_of(researcher->Post("/api/v1/renders", request.dump(), "application/json"), 202, "Render");
+  const auto all = renders->submitters_of(id);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].priority, Priority::anonymous);
+  EXPECT_EQ(all[0].client, "127.0.0.1");
+  EXPECT_EQ(all[1].priority, Priority::researcher);
+}
+
+TEST_F(Renders, ThatCannotBeMadeAreToldOfByReadiness) {
+  httplib::Client operations("127.0.0.1", server->ops_port());
+  EXPECT_EQ(operations.Get("/readyz")->status, 200);
+  renders->in_trouble = "no renderer is running, the last one failed: signal 11";
+  const auto unready = operations.Get("/readyz");
+  EXPECT_EQ(unready->status, 503);
+  EXPECT_NE(unready->body.find("no renderer is running"), std::string::npos) << unready->body;
 }
 
 TEST_F(Renders, TellTheirProgressAsEvents) {
@@ -167,6 +241,26 @@ TEST_F(Renders, OfASweepAreCountedAndTabled) {
   restart();
   const auto after = researcher->Get(path + "/events");
   EXPECT_EQ(body_of(researcher->Get(path), 200, "Sweep")["total"], 4);
+}
+
+TEST_F(Renders, OfManySweepsAreForgottenAndFoundAgain) {
+  std::vector<std::string> paths;
+  for (int i = 0; i < 40; ++i) {
+    const json sweep = {{"scenes", {"boxes"}}, {"techniques", {"none"}}, {"sizes", {64 + i}}};
+    const auto started =
+        body_of(researcher->Post("/api/v1/sweeps", sweep.dump(), "application/json"), 202, "Sweep");
+    paths.push_back(started["links"]["self"]);
+    researcher->Get(paths.back() + "/events");
+  }
+  httplib::Client operations("127.0.0.1", server->ops_port());
+  const auto metrics = operations.Get("/metrics")->body;
+  const std::string gauge = "\npenumbra_sweeps_kept ";
+  const auto kept = metrics.find(gauge);
+  ASSERT_NE(kept, std::string::npos) << metrics;
+  EXPECT_LE(std::stoi(metrics.substr(kept + gauge.size())), 32);
+  researcher->Get(paths.front() + "/events");
+  const auto csv = researcher->Get(paths.front() + "/results.csv");
+  EXPECT_NE(csv->body.find("boxes,none,64,done"), std::string::npos) << csv->body;
 }
 
 TEST_F(Renders, ListScenesAndTechniques) {

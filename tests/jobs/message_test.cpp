@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <thread>
 
 namespace penumbra::server {
@@ -11,7 +12,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
-using Outcome = MessageReader::Outcome;
 
 struct TestPipe {
   int ends[2] = {-1, -1};
@@ -46,10 +46,10 @@ TEST(Message, arrives_with_its_files_byte_for_byte) {
   });
   MessageReader reader(pipe.ends[0]);
   Message received;
-  EXPECT_EQ(reader.read(received, late()), Outcome::message);
+  EXPECT_EQ(reader.read(received, late()), Exchange::message);
   EXPECT_EQ(received.body, sent.body);
   EXPECT_EQ(received.blobs, sent.blobs);
-  EXPECT_EQ(reader.read(received, late()), Outcome::message);
+  EXPECT_EQ(reader.read(received, late()), Exchange::message);
   EXPECT_EQ(received.body.at("next"), 2);
   EXPECT_TRUE(received.blobs.empty());
   writer.join();
@@ -60,9 +60,9 @@ TEST(Message, is_waited_for_until_the_deadline_and_no_longer) {
   pipe.write("{\"half\":");
   MessageReader reader(pipe.ends[0]);
   Message message;
-  EXPECT_EQ(reader.read(message, soon()), Outcome::deadline);
+  EXPECT_EQ(reader.read(message, soon()), Exchange::deadline);
   pipe.write("1}\n");
-  EXPECT_EQ(reader.read(message, late()), Outcome::message);
+  EXPECT_EQ(reader.read(message, late()), Exchange::message);
   EXPECT_EQ(message.body.at("half"), 1);
 }
 
@@ -70,7 +70,35 @@ TEST(Message, is_given_up_when_asked_to_stop) {
   TestPipe pipe;
   MessageReader reader(pipe.ends[0]);
   Message message;
-  EXPECT_EQ(reader.read(message, late(), [] { return true; }), Outcome::stopped);
+  EXPECT_EQ(reader.read(message, late(), [] { return true; }), Exchange::stopped);
+}
+
+TEST(Message, to_one_that_stopped_reading_is_given_up) {
+  TestPipe pipe;
+  ASSERT_EQ(::fcntl(pipe.ends[1], F_SETFL, O_NONBLOCK), 0);
+  const Message large{{{"task", 1}}, {{"reference", std::string(1 << 20, 'x')}}};
+  const auto begin = steady_clock::now();
+  EXPECT_EQ(write_message(pipe.ends[1], large, soon(), {}), Exchange::deadline);
+  EXPECT_EQ(write_message(pipe.ends[1], large, late(), [] { return true; }), Exchange::stopped);
+  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(10));
+  ::close(pipe.ends[0]);
+  std::signal(SIGPIPE, SIG_IGN);
+  EXPECT_EQ(write_message(pipe.ends[1], large, late(), {}), Exchange::closed);
+  pipe.ends[0] = ::dup(pipe.ends[1]);
+}
+
+TEST(Message, to_a_slow_reader_passes_whole) {
+  TestPipe pipe;
+  ASSERT_EQ(::fcntl(pipe.ends[1], F_SETFL, O_NONBLOCK), 0);
+  const Message sent{{{"task", 1}}, {{"reference", std::string(300000, 'x')}}};
+  Message received;
+  std::thread slow([&] {
+    std::this_thread::sleep_for(milliseconds(100));
+    MessageReader(pipe.ends[0]).read(received, late());
+  });
+  EXPECT_EQ(write_message(pipe.ends[1], sent, late(), {}), Exchange::message);
+  slow.join();
+  EXPECT_EQ(received.blobs, sent.blobs);
 }
 
 TEST(Message, that_is_cut_off_is_none) {
@@ -79,7 +107,7 @@ TEST(Message, that_is_cut_off_is_none) {
   pipe.close_writer();
   MessageReader reader(pipe.ends[0]);
   Message message;
-  EXPECT_EQ(reader.read(message, late()), Outcome::closed);
+  EXPECT_EQ(reader.read(message, late()), Exchange::closed);
 }
 
 TEST(Message, from_a_stranger_is_told_from_one_of_ours) {
@@ -91,7 +119,7 @@ TEST(Message, from_a_stranger_is_told_from_one_of_ours) {
     pipe.write(text);
     MessageReader reader(pipe.ends[0]);
     Message message;
-    EXPECT_EQ(reader.read(message, late()), Outcome::garbled) << text;
+    EXPECT_EQ(reader.read(message, late()), Exchange::garbled) << text;
   }
 }
 

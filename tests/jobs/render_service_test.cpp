@@ -1,69 +1,7 @@
-#include "server/jobs/render_service.h"
-
-#include <gmock/gmock.h>
-#include <stdlib.h>
-
-#include <atomic>
-#include <fstream>
-#include <thread>
-
-#include "renderer/error.h"
-#include "server/jobs/task.h"
-#include "tests/jobs/temporary_folder.h"
-#include "tests/stand_in_worker/behaviour.h"
+#include "tests/jobs/render_service_fixture.h"
 
 namespace penumbra::server {
 namespace {
-
-using nlohmann::json;
-using std::chrono::steady_clock;
-
-constexpr double patience_s = 60.0;  // a loaded machine may take its time
-
-/// A service over stand-in workers in a folder of its own.
-class RenderServiceTest : public testing::Test {
- protected:
-  RenderServiceTest() {
-    options.data = folder.path() / "data";
-    options.worker_command = {PENUMBRA_STAND_IN_WORKER};
-    ::setenv("STAND_IN_LOG", log_path().c_str(), 1);
-    ::unsetenv("STAND_IN_REFUSES_TO_START");
-  }
-
-  std::filesystem::path log_path() const { return folder.path() / "log"; }
-
-  /// Tasks that began, or the lines that begin with `what`.
-  std::vector<std::string> log(const std::string& what = "begin") const {
-    std::vector<std::string> lines;
-    std::ifstream file(log_path());
-    for (std::string line; std::getline(file, line);)
-      if (line.starts_with(what)) lines.push_back(line);
-    return lines;
-  }
-
-  void start() { service = make_render_service(options); }
-
-  static json request(int width, Behaviour behaviour = Behaviour::behaves, int takes_ms = 1) {
-    return {{"scene", "half-plane"},
-            {"technique", "none"},
-            {"width", width},
-            {"seed", static_cast<int>(behaviour)},
-            {"light_samples", takes_ms}};
-  }
-  static json measured(int width) {
-    json body = request(width);
-    body["measure"] = true;
-    return body;
-  }
-
-  RenderRecord ended(const json& body) {
-    return *service->wait(service->submit(body).id, patience_s);
-  }
-
-  TemporaryFolder folder;
-  RenderServiceOptions options;
-  std::unique_ptr<RenderService> service;
-};
 
 std::string image_of(const std::string& id) {
   return "image.png of " + id;
@@ -75,7 +13,7 @@ TEST_F(RenderServiceTest, draws_once_and_answers_from_its_cache_afterwards) {
   EXPECT_EQ(first.status, "done");
   EXPECT_EQ(first.device.at("name"), "stand-in");
   EXPECT_TRUE(first.error.is_null());
-  EXPECT_EQ(service->artefact(first.id, "image.png"), image_of(first.id));
+  EXPECT_EQ(*service->artefact(first.id, "image.png"), image_of(first.id));
 
   EXPECT_EQ(service->submit(request(64)).status, "done");
   EXPECT_EQ(log().size(), 1u);
@@ -88,7 +26,7 @@ TEST_F(RenderServiceTest, knows_its_renders_after_a_restart) {
   start();
   EXPECT_EQ(service->find(id)->status, "done");
   EXPECT_EQ(service->submit(request(64)).status, "done");
-  EXPECT_EQ(service->artefact(id, "image.png"), image_of(id));
+  EXPECT_EQ(*service->artefact(id, "image.png"), image_of(id));
   EXPECT_EQ(log().size(), 1u);
 }
 
@@ -143,98 +81,6 @@ TEST_F(RenderServiceTest, refuses_when_the_queue_is_full_and_finishes_what_it_to
   for (const std::string& id : taken) EXPECT_EQ(service->wait(id, patience_s)->status, "done");
 }
 
-TEST_F(RenderServiceTest, tries_a_crashed_render_once_more) {
-  start();
-  EXPECT_EQ(ended(request(64, Behaviour::crashes_once)).status, "done");
-  EXPECT_EQ(log().size(), 2u);
-  EXPECT_EQ(log("start").size(), 2u);
-}
-
-TEST_F(RenderServiceTest, replaces_a_worker_that_lost_its_device) {
-  start();
-  EXPECT_EQ(ended(request(64, Behaviour::loses_device_once)).status, "done");
-  EXPECT_EQ(log("start").size(), 2u);
-}
-
-TEST_F(RenderServiceTest, fails_a_render_that_crashes_twice_and_serves_the_others) {
-  start();
-  const RenderRecord crashed = ended(request(64, Behaviour::crashes));
-  EXPECT_EQ(crashed.status, "failed");
-  EXPECT_EQ(crashed.error.at("code"), "device");
-  EXPECT_THAT(crashed.error.at("message").get<std::string>(), testing::HasSubstr("signal 6"));
-  EXPECT_EQ(service->find(crashed.id)->status, "failed");
-  EXPECT_EQ(service->artefact(crashed.id, "image.png"), std::nullopt);
-  EXPECT_EQ(ended(request(65)).status, "done");
-}
-
-TEST_F(RenderServiceTest, stops_a_hanging_render_at_its_deadline) {
-  options.deadline_s = 0.5;
-  start();
-  const auto begin = steady_clock::now();
-  const RenderRecord hung = ended(request(64, Behaviour::hangs));
-  EXPECT_EQ(hung.status, "failed");
-  EXPECT_EQ(hung.error.at("code"), "deadline");
-  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(30));
-  EXPECT_EQ(ended(request(65)).status, "done");
-}
-
-TEST_F(RenderServiceTest, takes_nonsense_from_a_worker_for_a_crash) {
-  start();
-  const RenderRecord record = ended(request(64, Behaviour::talks_nonsense));
-  EXPECT_EQ(record.status, "failed");
-  EXPECT_EQ(record.error.at("code"), "device");
-}
-
-TEST_F(RenderServiceTest, passes_on_why_a_worker_refuses_and_keeps_the_worker) {
-  start();
-  const RenderRecord record = ended(request(64, Behaviour::refuses));
-  EXPECT_EQ(record.status, "failed");
-  EXPECT_EQ(record.error.at("code"), "unsupported");
-  EXPECT_EQ(record.error.at("field"), "lights");
-  EXPECT_EQ(ended(request(65)).status, "done");
-  EXPECT_EQ(log("start").size(), 1u);
-}
-
-TEST_F(RenderServiceTest, opens_a_breaker_when_no_worker_starts) {
-  ::setenv("STAND_IN_REFUSES_TO_START", "1", 1);
-  start();
-  const auto deadline = steady_clock::now() + std::chrono::seconds(30);
-  while (!service->statistics().at("breaker_open") && steady_clock::now() < deadline)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_TRUE(service->statistics().at("breaker_open"));
-  try {
-    service->submit(request(64));
-    FAIL() << "a request was taken that nobody can draw";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code, "busy");
-    EXPECT_THAT(error.what(), testing::HasSubstr("status 3"));
-  }
-  // It waits between tries: far fewer starts than a second holds.
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_LE(log("start").size(), 5u);
-}
-
-TEST_F(RenderServiceTest, cancels_what_nobody_else_waits_for) {
-  start();
-  const std::string id = service->submit(request(64, Behaviour::hangs)).id;
-  service->submit(request(64, Behaviour::hangs));  // a second person wants it too
-  while (service->find(id)->status == "queued") std::this_thread::yield();
-  EXPECT_TRUE(service->cancel(id));
-  EXPECT_EQ(service->find(id)->status, "running");
-  EXPECT_TRUE(service->cancel(id));
-  EXPECT_EQ(service->wait(id, patience_s)->status, "cancelled");
-  EXPECT_FALSE(service->cancel(std::string(32, '0')));
-  EXPECT_EQ(ended(request(65)).status, "done");
-}
-
-TEST_F(RenderServiceTest, cancels_what_still_waits_without_a_worker) {
-  start();
-  service->submit(request(64, Behaviour::behaves, 300));
-  const std::string id = service->submit(request(65)).id;
-  EXPECT_TRUE(service->cancel(id));
-  EXPECT_EQ(service->find(id)->status, "cancelled");
-}
-
 TEST_F(RenderServiceTest, draws_an_altered_picture_again) {
   start();
   const std::string id = ended(request(64)).id;
@@ -243,16 +89,16 @@ TEST_F(RenderServiceTest, draws_an_altered_picture_again) {
   ASSERT_TRUE(std::filesystem::exists(file));
   std::ofstream(file) << "something else";
   start();
-  EXPECT_EQ(service->artefact(id, "image.png"), image_of(id));
+  EXPECT_EQ(*service->artefact(id, "image.png"), image_of(id));
   EXPECT_EQ(log().size(), 2u);
 }
 
 TEST_F(RenderServiceTest, makes_further_files_of_a_picture_when_they_are_asked_for) {
   start();
   const std::string id = ended(request(64)).id;
-  EXPECT_EQ(service->artefact(id, "visibility.exr"), "visibility.exr of " + id);
-  EXPECT_EQ(service->artefact(id, "secret.txt"), std::nullopt);
-  EXPECT_EQ(service->artefact(std::string(32, '0'), "image.png"), std::nullopt);
+  EXPECT_EQ(*service->artefact(id, "visibility.exr"), "visibility.exr of " + id);
+  EXPECT_EQ(service->artefact(id, "secret.txt"), nullptr);
+  EXPECT_EQ(service->artefact(std::string(32, '0'), "image.png"), nullptr);
   EXPECT_THAT(log().back(), testing::HasSubstr("[\"visibility.exr\"]"));
 }
 

@@ -1,6 +1,7 @@
 // A worker without a device. The request's seed says how it behaves; its light_samples, how many
 // milliseconds a picture takes. Every task is a line in the file named by STAND_IN_LOG, every start
-// the line "start".
+// the line "start" and its process. STAND_IN_LIMITS is what it says of its device's memory,
+// STAND_IN_PADDING how many bytes its files are longer.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -28,6 +29,16 @@ void log_line(const std::string& line) {
   std::ofstream(log_path(), std::ios::app) << line << std::endl;
 }
 
+std::string padding() {
+  const char* bytes = std::getenv("STAND_IN_PADDING");
+  return std::string(bytes ? std::strtoull(bytes, nullptr, 10) : 0, '.');
+}
+
+json limits() {
+  const char* text = std::getenv("STAND_IN_LIMITS");
+  return text ? json::parse(text) : json::object();
+}
+
 bool first_time(const std::string& id) {
   const std::string mark = log_path() + "." + id;
   if (std::filesystem::exists(mark)) return false;
@@ -48,7 +59,7 @@ Message draw(const json& task) {
     } else if (name == want::noise) {
       done["noise_rms_y"] = 0.25;
     } else {
-      reply.blobs[name] = name + " of " + task.at("id").get<std::string>();
+      reply.blobs[name] = name + " of " + task.at("id").get<std::string>() + padding();
     }
   }
   return reply;
@@ -57,17 +68,17 @@ Message draw(const json& task) {
 }  // namespace
 
 int main() {
-  log_line("start");
+  log_line("start " + std::to_string(::getpid()));
   if (std::getenv("STAND_IN_REFUSES_TO_START")) return 3;
   write_message(STDOUT_FILENO,
                 {{{"hello",
                    {{"renderer", drawing_version()},
+                    {"limits", limits()},
                     {"device", {{"name", "stand-in"}, {"driver", "none"}, {"type", "cpu"}}}}}},
                  {}});
   MessageReader reader(STDIN_FILENO);
   Message message;
-  while (reader.read(message, std::chrono::steady_clock::time_point::max()) ==
-         MessageReader::Outcome::message) {
+  while (reader.read(message, std::chrono::steady_clock::time_point::max()) == Exchange::message) {
     const json task = message.body.at("task");
     const json& request = task.at("request");
     const std::string id = task.at("id");
