@@ -42,7 +42,10 @@ int import_scene(const Session& session, const fs::path& file, const std::string
     if (info.id == id) throw bad_value("id", "--id " + id + " is the name of a built-in scene");
   // Kept as one file with everything in it, by the same way as uploads.
   const auto scene = scenes::load(fs::absolute(file).string());
-  json document = summary(*http::store_scene(data, id, scenes::encode_glb(*scene)));
+  json document = http::store_scene(
+      data, id, scenes::encode_glb(*scene),
+      [](const fs::path& stored) { return summary(*scenes::load(stored.string())); });
+  document.erase("replaced");
   document["id"] = id;
   document["notes"] = scene->notes;
   session.print(document, text_of(document));
@@ -85,20 +88,21 @@ void add_scene_commands(CLI::App& app, Session& session) {
   import->callback([options, &session] {
     session.action = [options, &session] {
       return import_scene(session, options->file, options->id, options->data);
-    };
-  });
+};
+}  // namespace penumbra::server::cli
+);
 
-  CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
-  out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
-      ->required();
-  out->add_option("--out", options->out, "File, .glb")->required();
-  out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
-  add_json_flag(*out, session);
-  out->callback([options, &session] {
-    session.action = [options, &session] {
-      return export_scene(session, options->scene, options->out, options->data);
-    };
-  });
+CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
+out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
+    ->required();
+out->add_option("--out", options->out, "File, .glb")->required();
+out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
+add_json_flag(*out, session);
+out->callback([options, &session] {
+  session.action = [options, &session] {
+    return export_scene(session, options->scene, options->out, options->data);
+  };
+});
 }
 
 }  // namespace penumbra::server::cli

@@ -37,6 +37,9 @@ void add_serve(CLI::App& app, Session& session) {
   serve->add_option("--render-deadline", options->render_deadline_s, "Seconds per render")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
+  serve->add_option("--import-deadline", options->import_deadline_s, "Seconds per uploaded scene")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
   serve
       ->add_option("--drain-deadline", options->drain_deadline_s,
                    "Seconds for running work after SIGTERM")
@@ -55,6 +58,8 @@ void add_worker(CLI::App& app, Session& session) {
   worker->add_option("--device", options->device, "Vulkan device: part of its name, or its index");
   worker->add_option("--memory-limit", options->memory_limit,
                      "Address space that drawing may add, bytes; 0: the machine's memory");
+  worker->add_option("--read-scene", options->read_scene,
+                     "Only read this scene file and say what it is");
   worker->add_option("--checkpoint-s", options->checkpoint_s,
                      "Least time between two checkpoints of a picture, seconds");
   worker->add_flag("--validation", options->validation, "Turn Vulkan's validation layer on");

@@ -1,4 +1,7 @@
 // GET /api/v1/image and /api/v1/plan: a request in the query.
+#include <chrono>
+#include <semaphore>
+
 #include "renderer/error.h"
 #include "server/http/renders.h"
 #include "server/http/reply.h"
@@ -23,7 +26,16 @@ void get_image(Call& call) {
   send_artefact(call, record, "image.png");
 }
 
+/// Plans of large scenes take seconds and hundreds of megabytes: few are made at once.
+constexpr int most_plans = 2;
+constexpr auto plan_patience = std::chrono::seconds(20);
+
 void get_plan(Call& call) {
+  static std::counting_semaphore<most_plans> places{most_plans};
+  if (!places.try_acquire_for(plan_patience)) throw Error("busy", "other plans are being made");
+  struct Place {
+    ~Place() { places.release(); }
+  } const place;
   const RequestContext context{call.service.folder.path(), call.service.options.device, false};
   send_json(call.response, 200, plan_document(read_request(request_in_query(call), context)));
 }

@@ -1,13 +1,16 @@
 #include "server/http/scene_upload.h"
 
+#include <fcntl.h>
+#include <stdio.h>
 #include <zip.h>
 
 #include <algorithm>
 #include <cctype>
+#include <mutex>
+#include <set>
 #include <vector>
 
 #include "renderer/error.h"
-#include "scenes/library.h"
 #include "server/http/secrets.h"
 #include "server/storage/data_folder.h"
 
@@ -57,6 +60,20 @@ void check_name(const std::string& name) {
     if (c < 0x20) refuse();
   for (const auto& part : fs::path(name))
     if (part == ".." || part == ".") refuse();
+}
+
+/// Refuses two entries of one name, and one that is a file here and a folder there.
+void note_name(const std::string& name, std::set<fs::path>& files, std::set<fs::path>& folders) {
+  const bool is_folder = name.ends_with('/');
+  const fs::path path =
+      fs::path(is_folder ? name.substr(0, name.size() - 1) : name).lexically_normal();
+  bool fits = is_folder || files.insert(path).second;
+  if (is_folder) folders.insert(path);
+  for (fs::path above = path.parent_path(); !above.empty(); above = above.parent_path())
+    folders.insert(above);
+  for (fs::path above = path; fits && !above.empty(); above = above.parent_path())
+    fits = !(files.contains(above) && folders.contains(above));
+  if (!fits) throw unreadable("the archive names '" + name + "' twice", "body");
 }
 
 bool is_link(zip_t* archive, zip_uint64_t index) {
@@ -117,9 +134,9 @@ fs::path write_upload(const fs::path& folder, const std::string& bytes) {
 }
 
 /// Reads it for good; messages name the file as the sender knows it.
-std::shared_ptr<const Scene> load_upload(const fs::path& file, const fs::path& folder) {
+nlohmann::json read_upload(const ReadScene& read, const fs::path& file, const fs::path& folder) {
   try {
-    return scenes::load(file.string());
+    return read(file);
   } catch (const Error& error) {
     std::string message = error.what();
     const auto prefix = folder.string() + "/";
@@ -127,6 +144,20 @@ std::shared_ptr<const Scene> load_upload(const fs::path& file, const fs::path& f
       message.erase(at, prefix.size());
     throw Error(error.code == "not_found" ? "unreadable" : error.code, message, error.field);
   }
+}
+
+/// Uploads of one id may come at the same time; one process owns the folder.
+std::mutex& replacing() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Puts a folder in the place of another, or of none, at once: there is no time without a scene.
+void exchange(const fs::path& fresh, const fs::path& place) {
+  if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, place.c_str(), RENAME_EXCHANGE) == 0) return;
+  // Not every file system exchanges; then there is a moment without one.
+  if (fs::is_directory(place)) fs::rename(place, fresh.parent_path() / "old");
+  fs::rename(fresh, place);
 }
 
 /// Where a scene of that id lies: an uploaded one is a folder, one of the command line a file.
@@ -165,6 +196,8 @@ void unpack(const std::string& bytes, const fs::path& folder) {
     throw unreadable("the archive holds more than " + std::to_string(most_files) + " files",
                      "body");
   zip_uint64_t total = 0;
+  std::set<fs::path> files;
+  std::set<fs::path> folders;
   for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
     zip_stat_t stat;
     if (zip_stat_index(archive.handle, i, 0, &stat) != 0)
@@ -172,6 +205,7 @@ void unpack(const std::string& bytes, const fs::path& folder) {
     const std::string name = stat.name;
     check_name(name);
     if (is_link(archive.handle, i)) throw unreadable("the archive holds a link: " + name, "body");
+    note_name(name, files, folders);
     if (name.ends_with('/')) continue;
     if (name.ends_with(".zip")) throw unreadable("the archive holds an archive", "body");
     if (stat.size > small_file &&
@@ -187,26 +221,34 @@ void unpack(const std::string& bytes, const fs::path& folder) {
   }
 }
 
-bool has_scene(const fs::path& data, const std::string& id) {
-  return !places_of(data, id).empty();
-}
-
-std::shared_ptr<const Scene> store_scene(const fs::path& data, const std::string& id,
-                                         const std::string& bytes) {
+nlohmann::json store_scene(const fs::path& data, const std::string& id, const std::string& bytes,
+                           const ReadScene& read) {
   const Staging staging(data);
   const auto fresh = staging.path / "scene";
   fs::create_directories(fresh);
-  const auto scene = load_upload(write_upload(fresh, bytes), fresh);
+  nlohmann::json about = read_upload(read, write_upload(fresh, bytes), fresh);
   fs::create_directories(data / "scenes");
-  for (const auto& old : places_of(data, id)) fs::rename(old, staging.path / old.filename());
-  fs::rename(fresh, data / "scenes" / id);
-  return scene;
+  const std::lock_guard lock(replacing());
+  const auto old = places_of(data, id);
+  exchange(fresh, data / "scenes" / id);
+  // A file of the command line goes last: while both are there, it is the scene.
+  for (const auto& place : old)
+    if (place != data / "scenes" / id) fs::remove_all(place);
+  about["replaced"] = !old.empty();
+  return about;
 }
 
 bool remove_scene(const fs::path& data, const std::string& id) {
+  const std::lock_guard lock(replacing());
   const auto places = places_of(data, id);
   for (const auto& place : places) fs::remove_all(place);
   return !places.empty();
+}
+
+void sweep_uploads(const fs::path& data) {
+  std::error_code error;
+  for (const auto& left_over : fs::directory_iterator(data / "incoming", error))
+    fs::remove_all(left_over.path(), error);
 }
 
 }  // namespace penumbra::server::http

@@ -27,14 +27,17 @@ void put_scene(Call& call) {
   check_scene_id(id);
   if (is_built_in(id)) throw Error("conflict", "built-in scenes cannot be replaced", "id");
   const auto& data = call.service.folder.path();
-  const bool replaced = has_scene(data, id);
-  const auto scene = store_scene(data, id, call.body);
-  send_json(call.response, replaced ? 200 : 201,
+  const auto stopping = [&service = call.service] { return service.draining.load(); };
+  const auto about = store_scene(data, id, call.body, [&](const std::filesystem::path& file) {
+    return call.service.scene_reader.read(file, stopping);
+  });
+  const std::string title = about.at("title");
+  send_json(call.response, about.at("replaced").get<bool>() ? 200 : 201,
             {{"id", id},
-             {"title", scene->title.empty() ? id : scene->title},
+             {"title", title.empty() ? id : title},
              {"description", "imported"},
              {"built_in", false},
-             {"notes", scene->notes}});
+             {"notes", about.at("notes")}});
 }
 
 void delete_scene(Call& call) {

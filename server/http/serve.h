@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace penumbra::server {
 class RenderService;
@@ -25,7 +26,9 @@ struct ServeOptions {
   std::string public_url;      ///< how browsers reach the server, e.g. https://study.example.org
   unsigned queue_limit = 256;  ///< renders that may wait
   double render_deadline_s = 300.0;
-  double drain_deadline_s = 30.0;  ///< after SIGTERM
+  double import_deadline_s = 60.0;          ///< per uploaded scene
+  std::vector<std::string> worker_command;  ///< of the process that reads them; empty: this program
+  double drain_deadline_s = 30.0;           ///< after SIGTERM
   bool validation = false;
 };
 

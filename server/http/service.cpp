@@ -4,6 +4,7 @@
 
 #include "server/http/clock.h"
 #include "server/http/documents.h"
+#include "server/http/scene_upload.h"
 #include "server/http/secrets.h"
 #include "study/study.h"
 
@@ -18,9 +19,12 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
       studies(database),
       participants(database),
       renders(make_renders()),
+      scene_reader({options.worker_command, 0, options.import_deadline_s}),
       frozen(studies),
       publisher(studies, *renders, folder.path() / "pictures"),
-      sweeps(database, *renders) {}
+      sweeps(database, *renders) {
+  sweep_uploads(folder.path());
+}
 
 std::string Service::not_ready() const {
   if (draining) return "draining";
@@ -32,6 +36,7 @@ std::string Service::not_ready() const {
 nlohmann::json Service::gauges() {
   nlohmann::json numbers = {{"renders", renders->statistics()},
                             {"sweeps", sweeps.statistics()},
+                            {"scene_reader", scene_reader.statistics()},
                             {"ready", not_ready().empty()},
                             {"participants", nlohmann::json::object()}};
   if (!database.healthy()) return numbers;

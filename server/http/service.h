@@ -10,6 +10,7 @@
 #include "server/http/serve.h"
 #include "server/http/sweeps.h"
 #include "server/jobs/render_service.h"
+#include "server/jobs/scene_reader.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/database.h"
 #include "server/storage/participants.h"
@@ -28,6 +29,7 @@ struct Service {
   storage::Studies studies;
   storage::Participants participants;
   std::unique_ptr<RenderService> renders;
+  SceneReader scene_reader;
   FrozenStudies frozen;
   Metrics metrics;
   RateLimiter failures{30, 0.5};     ///< wrong tokens and codes

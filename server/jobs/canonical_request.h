@@ -19,6 +19,7 @@ struct RequestContext {
   std::filesystem::path data;  ///< where imported scenes lie; may be empty
   std::string device;          ///< as RendererOptions::device
   bool files = false;  ///< paths are scenes too: for a person's command line, never for HTTP
+  std::uint64_t kept_scene_bytes = 256u << 20;  ///< of loaded scenes that are kept for later
 };
 
 /// A request with nothing left open.

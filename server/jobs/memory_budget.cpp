@@ -1,9 +1,12 @@
 #include "server/jobs/memory_budget.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include "renderer/error.h"
 #include "renderer/scene/memory_check.h"
@@ -59,6 +62,15 @@ std::uint64_t worker_memory(unsigned workers) {
   const std::uint64_t all = usable_memory();
   const std::uint64_t reserve = std::max(least_reserve, all / reserve_share);
   return std::max(least_worker, (all - std::min(all, reserve)) / std::max(1u, workers));
+}
+
+void limit_memory(std::uint64_t allowance) {
+  const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit limit{pages * page + allowance, pages * page + allowance};
+  if (::setrlimit(RLIMIT_AS, &limit) != 0)
+    throw std::system_error(errno, std::generic_category(), "limiting a process's memory");
 }
 
 DeviceLimits limits_within(const Renderer& renderer, std::uint64_t allowance) {

@@ -18,6 +18,9 @@ std::uint64_t usable_memory();
 /// memory, less a reserve for the server and the system.
 std::uint64_t worker_memory(unsigned workers);
 
+/// Lets this process's address space grow by so many bytes and no further (RLIMIT_AS).
+void limit_memory(std::uint64_t allowance);
+
 /// The renderer's limits for a process that may add `allowance` bytes: a device that is the
 /// processor has no memory of its own.
 DeviceLimits limits_within(const Renderer& renderer, std::uint64_t allowance);

@@ -171,6 +171,7 @@ RenderRecord QueuedRenderService::enqueue(CanonicalRequest request,
   job->priority = who.priority;
   job->client = who.client;
   job->request = std::move(request);
+  job->request.scene.reset();  // a worker reads its own; hundreds may wait
   jobs_[job->record.id] = job;
   over_.erase(job->record.id);
   queue_.push(job);

@@ -1,8 +1,11 @@
 #include "server/jobs/request_scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <list>
 #include <mutex>
+#include <optional>
+#include <semaphore>
 #include <set>
 
 #include "renderer/error.h"
@@ -12,8 +15,10 @@ namespace penumbra::server {
 namespace fs = std::filesystem;
 namespace {
 
-/// Scenes kept: the survey's six, a study's own few, and what a person tries beside them.
-constexpr std::size_t kept_scenes = 16;
+/// Scenes that are read or generated at once, and how long others wait for their turn. Each may
+/// take seconds and a gigabyte.
+constexpr int most_at_once = 2;
+constexpr auto patience = std::chrono::seconds(20);
 
 bool is_generated(const std::string& name) {
   static const std::set<std::string> ids = [] {
@@ -48,10 +53,53 @@ std::string stamp_of(const std::string& id, const fs::path& data) {
   return stamp;
 }
 
-struct Kept {
-  std::string key;
-  std::string stamp;
-  HashedScene scene;
+/// About what a scene takes in memory.
+std::uint64_t bytes_of(const Scene& scene) {
+  const auto size = [](const auto& list) {
+    return list.capacity() * sizeof(typename std::decay_t<decltype(list)>::value_type);
+  };
+  std::uint64_t bytes = size(scene.instances) + size(scene.lights);
+  for (const Mesh& mesh : scene.meshes)
+    bytes += size(mesh.positions) + size(mesh.normals) + size(mesh.uvs) + size(mesh.colors) +
+             size(mesh.indices) + size(mesh.primitives);
+  for (const Texture& texture : scene.textures) bytes += size(texture.rgba);
+  return bytes;
+}
+
+/// Loaded scenes, most recently used first.
+class Shelf {
+ public:
+  std::optional<HashedScene> find(const std::string& key, const std::string& stamp) {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& each) { return each.key == key; });
+    if (found == kept_.end() || found->stamp != stamp) return {};
+    kept_.splice(kept_.begin(), kept_, found);
+    return found->scene;
+  }
+
+  void add(const std::string& key, const std::string& stamp, const HashedScene& scene,
+           std::uint64_t most_bytes) {
+    const std::uint64_t bytes = bytes_of(*scene.scene);
+    const std::lock_guard lock(mutex_);
+    kept_.remove_if([&](const Kept& each) { return each.key == key; });
+    if (bytes <= most_bytes) kept_.push_front({key, stamp, scene, bytes});
+    std::uint64_t sum = 0;
+    for (auto each = kept_.begin(); each != kept_.end();) {
+      sum += each->bytes;
+      each = sum > most_bytes ? kept_.erase(each) : std::next(each);
+    }
+  }
+
+ private:
+  struct Kept {
+    std::string key;
+    std::string stamp;
+    HashedScene scene;
+    std::uint64_t bytes;
+  };
+  std::mutex mutex_;
+  std::list<Kept> kept_;
 };
 
 HashedScene load_now(const std::string& name, const fs::path& data) {
@@ -93,23 +141,18 @@ HashedScene load_request_scene(const std::string& name, const RequestContext& co
     return load_now(name, context.data);
   }
 
-  static std::mutex mutex;
-  static std::list<Kept> kept;  // most recently used first
+  static Shelf shelf;
+  static std::counting_semaphore<most_at_once> places{most_at_once};
   const std::string key = generated ? name : context.data.string() + "/" + name;
-  {
-    const std::lock_guard lock(mutex);
-    const auto found =
-        std::find_if(kept.begin(), kept.end(), [&](const Kept& k) { return k.key == key; });
-    if (found != kept.end() && found->stamp == stamp) {
-      kept.splice(kept.begin(), kept, found);
-      return found->scene;
-    }
-  }
+  if (const auto found = shelf.find(key, stamp)) return *found;
+  if (!places.try_acquire_for(patience)) throw Error("busy", "other scenes are being loaded");
+  struct Place {
+    ~Place() { places.release(); }
+  } const place;
+  // Another may have loaded it meanwhile.
+  if (const auto found = shelf.find(key, stamp)) return *found;
   const HashedScene loaded = load_now(name, context.data);
-  const std::lock_guard lock(mutex);
-  kept.remove_if([&](const Kept& k) { return k.key == key; });
-  kept.push_front({key, stamp, loaded});
-  if (kept.size() > kept_scenes) kept.pop_back();
+  shelf.add(key, stamp, loaded, context.kept_scene_bytes);
   return loaded;
 }
 

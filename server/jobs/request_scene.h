@@ -12,9 +12,11 @@ struct HashedScene {
   std::string hash;  ///< scenes::content_hash
 };
 
-/// Loads the scene a request names, as the context permits. Scenes with an id are kept in memory
-/// until what they were read from changes; files named by path are read each time. Thread-safe.
-/// Throws not_found where the context does not permit paths and there is no scene of that id.
+/// Loads the scene a request names, as the context permits. Scenes with an id are kept in memory,
+/// as many as the context has bytes for, until what they were read from changes; files named by
+/// path are read each time. Thread-safe; few are loaded at once, and `busy` is thrown where that
+/// lasts. Throws not_found where the context does not permit paths and there is no scene of that
+/// id.
 HashedScene load_request_scene(const std::string& name, const RequestContext& context);
 
 /// Ids of the imported scenes in a data folder, sorted.

@@ -2,12 +2,10 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <new>
 #include <system_error>
@@ -16,6 +14,7 @@
 #include "server/jobs/canonical_request.h"
 #include "server/jobs/drawing_version.h"
 #include "server/jobs/memory_budget.h"
+#include "server/jobs/scene_reader.h"
 #include "server/jobs/task.h"
 
 namespace penumbra::server {
@@ -26,6 +25,9 @@ using std::chrono::steady_clock;
 
 constexpr auto between_progress = std::chrono::milliseconds(50);
 
+/// One part in so many of a worker's memory is for scenes that it keeps.
+constexpr std::uint64_t kept_scene_share = 4;
+
 /// Keeps the protocol's channel apart from what drivers and layers print to standard output.
 int claim_output() {
   const int channel = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 10);
@@ -34,13 +36,8 @@ int claim_output() {
   return channel;
 }
 
-void limit_memory(std::uint64_t allowance) {
-  const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  std::uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  const rlimit limit{pages * page + allowance, pages * page + allowance};
-  if (::setrlimit(RLIMIT_AS, &limit) != 0)
-    throw std::system_error(errno, std::generic_category(), "limiting the worker's memory");
+std::uint64_t memory_of(const WorkerOptions& options) {
+  return options.memory_limit > 0 ? options.memory_limit : worker_memory(1);
 }
 
 json error_body(const Error& error, bool fatal) {
@@ -57,7 +54,9 @@ Task task_from(Message& message, const WorkerOptions& options) {
   if (body.at("frames") != 0) request["frames"] = body.at("frames");
 
   Task task;
-  task.request = read_request(request, {options.data, options.device, false});
+  // Scenes that come again, however large, are not read again.
+  task.request = read_request(
+      request, {options.data, options.device, false, memory_of(options) / kept_scene_share});
   if (task.request.request.at("renderer") != renderer)
     throw unsupported("this picture was drawn by another version of the renderer: ask for it anew");
   if (task.request.request.at("scene_hash") != scene_hash)
@@ -147,6 +146,7 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
 }  // namespace
 
 int run_worker(const WorkerOptions& options) {
+  if (!options.read_scene.empty()) return run_scene_reader(options.read_scene, memory_of(options));
   // A worker never outlives who asked for it.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);

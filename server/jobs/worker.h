@@ -15,6 +15,8 @@ struct WorkerOptions {
   /// Address space that drawing may add once the device is open, bytes; 0: the share of the only
   /// worker. Drivers map far more than they use, hence counted from there.
   std::uint64_t memory_limit = 0;
+  /// Only read this scene file and say what it is (scene_reader.h); no device is opened.
+  std::filesystem::path read_scene;
   double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
 };
 

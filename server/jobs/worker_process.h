@@ -1,7 +1,5 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "renderer/render.h"
+#include "server/jobs/child_process.h"
 #include "server/jobs/message.h"
 
 namespace penumbra::server {
@@ -41,9 +40,6 @@ class WorkerProcess {
   /// Starts it and waits for its hello; `cancelled` is asked often. Throws WorkerLost,
   /// WorkCancelled, or the Error that the worker told.
   WorkerProcess(const WorkerCommand& command, const std::function<bool()>& cancelled);
-  ~WorkerProcess();
-  WorkerProcess(const WorkerProcess&) = delete;
-  WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   const nlohmann::json& device() const { return device_; }
   const DeviceLimits& limits() const { return limits_; }
@@ -55,13 +51,12 @@ class WorkerProcess {
               const std::function<bool()>& cancelled);
 
   /// False once it was killed or said that it ends; make a new one then.
-  bool alive() const { return process_ > 0; }
+  bool alive() const { return child_->running(); }
 
   /// How it ended where it did so without a task; it is not alive then.
   std::optional<std::string> died_idle();
 
  private:
-  void kill();
   [[noreturn]] void lost(const std::string& during);
   /// What became of an exchange: returns where the message passed, else ends the worker and throws.
   void require_message(Exchange outcome);
@@ -69,10 +64,8 @@ class WorkerProcess {
                const std::function<bool()>& cancelled);
   [[noreturn]] void raise(const nlohmann::json& body);
 
-  pid_t process_ = -1;
-  int input_ = -1;   ///< to the worker
-  int output_ = -1;  ///< from the worker
-  std::unique_ptr<MessageReader> reader_;
+  std::unique_ptr<ChildProcess> child_;
+  MessageReader reader_;
   nlohmann::json device_;
   DeviceLimits limits_;
 };

@@ -27,6 +27,8 @@ class RunningServer : public testing::Test {
     options.port = 0;
     options.ops_port = 0;
     options.data = folder.path / "data";
+    options.worker_command = {PENUMBRA_BINARY_DIR "/penumbra", "worker"};
+    adjust(options);
     server = std::make_unique<Server>(options, [this] {
       auto fake = std::make_unique<FakeRenders>();
       renders = fake.get();
@@ -41,6 +43,9 @@ class RunningServer : public testing::Test {
     researcher->set_read_timeout(20);
     researcher->set_bearer_token_auth(server->token());
   }
+
+  /// Options of a test's own.
+  virtual void adjust(ServeOptions&) {}
 
   void stop() {
     client.reset();

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <zip.h>
 
+#include <atomic>
 #include <fstream>
+#include <thread>
 
 #include "scenes/export.h"
 #include "scenes/library.h"
@@ -57,6 +59,13 @@ TEST_F(AnArchive, IsRefusedWithTooManyFiles) {
 
 TEST_F(AnArchive, IsRefusedWithAnArchiveInside) {
   expect_refused(zip_of(Files{{"a.zip", zip_of(Files{{"b", "x"}})}}), "holds an archive");
+}
+
+TEST_F(AnArchive, IsRefusedWithOneNameTwice) {
+  for (const Files& files :
+       {Files{{"m.glb", "x"}, {"m.glb/inner", "y"}}, Files{{"m.glb/inner", "y"}, {"m.glb", "x"}},
+        Files{{"a/b", "x"}, {"a/b/c/d", "y"}}, Files{{"a//b", "x"}, {"a/b", "y"}}})
+    expect_refused(zip_of(files), "twice");
 }
 
 TEST_F(AnArchive, IsRefusedWithALink) {
@@ -146,6 +155,66 @@ TEST_F(UploadedScenes, AreKeptWhereTheNewOneCannotBeRead) {
   EXPECT_EQ(error_of(broken, 422), "unreadable");
   EXPECT_EQ(broken->body.find(folder.path.string()), std::string::npos) << broken->body;
   EXPECT_NO_THROW(scenes::load("mine", folder.path / "data"));
+}
+
+TEST_F(UploadedScenes, MayComeAtTheSameTimeUnderOneId) {
+  const auto glb = scenes::encode_glb(*scenes::load("sweep:2x50x1"));
+  std::atomic<int> stored = 0;
+  std::vector<std::thread> senders;
+  for (int i = 0; i < 8; ++i)
+    senders.emplace_back([&] {
+      httplib::Client sender("127.0.0.1", server->port());
+      sender.set_read_timeout(120);
+      sender.set_bearer_token_auth(server->token());
+      const auto result = sender.Put("/api/v1/scenes/mine", glb, "model/gltf-binary");
+      if (result && (result->status == 200 || result->status == 201)) ++stored;
+    });
+  for (std::thread& sender : senders) sender.join();
+  EXPECT_EQ(stored, 8);
+  EXPECT_NO_THROW(scenes::load("mine", folder.path / "data"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "incoming"));
+}
+
+TEST_F(UploadedScenes, ThatAStopInterruptedAreSweptAtTheNextStart) {
+  stop();
+  std::filesystem::create_directories(folder.path / "data" / "incoming" / "left" / "scene");
+  start();
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "incoming"));
+}
+
+/// The process that reads uploads is a script that does as the file says.
+class BadReaders : public RunningServer {
+ protected:
+  void adjust(ServeOptions& options) override {
+    const auto script = folder.path / "reader";
+    // The file's name is its last argument; a scene document may hold any text.
+    std::ofstream(script) << "#!/bin/sh\nfor last; do :; done\n"
+                             "case $(cat \"$last\") in\n"
+                             "*crash*) kill -SEGV $$;;\n"
+                             "*hang*) exec sleep 600;;\n"
+                             "*chatter*) exec yes;;\n"
+                             "esac\n"
+                             "echo '{\"scene\":{\"title\":\"Read\",\"notes\":[]}}'\n";
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    options.worker_command = {script};
+    options.import_deadline_s = 1.0;
+  }
+
+  httplib::Result put(const std::string& id, const std::string& document) {
+    return researcher->Put("/api/v1/scenes/" + id, document, "application/json");
+  }
+};
+
+TEST_F(BadReaders, CostTheirUploadAndNothingElse) {
+  EXPECT_EQ(body_of(put("mine", "{}"), 201, "Scene")["title"], "Read");
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(error_of(put("mine", R"({"it": "crash"})"), 422), "unreadable");
+  EXPECT_EQ(error_of(put("mine", R"({"it": "hang"})"), 504), "deadline");
+  EXPECT_EQ(error_of(put("mine", R"({"it": "chatter"})"), 422), "unreadable");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_EQ(storage::read_file(folder.path / "data" / "scenes" / "mine" / "scene.json"), "{}");
+  EXPECT_EQ(body_of(put("mine", "{ }"), 200, "Scene")["title"], "Read");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "incoming"));
 }
 
 TEST_F(UploadedScenes, ThatCannotBeReadLeaveNothingBehind) {
