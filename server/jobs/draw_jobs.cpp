@@ -214,8 +214,10 @@ void QueuedRenderService::finish(const std::shared_ptr<Job>& job, const std::set
   queue_.finished(*job);
   const bool more = status == "done" && !job->cancelled &&
                     !std::includes(done.begin(), done.end(), job->wants.begin(), job->wants.end());
-  if (more) {
-    // More was asked for while it ran.
+  // It may have been asked for anew between its cancelling and its end.
+  const bool wanted_again = status == "cancelled" && !job->submitters.empty() && !stopping_;
+  if (more || wanted_again) {
+    job->cancelled = false;
     job->record.status = "queued";
     job->alone = job->wants.contains(want::cost);
     queue_.push(job);

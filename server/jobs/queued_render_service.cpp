@@ -185,6 +185,7 @@ void QueuedRenderService::join(Job& job, const Submitter& who) {
       std::any_of(job.submitters.begin(), job.submitters.end(),
                   [&](const Submitter& each) { return share_one(who.keys, each.keys); });
   if (!known && job.submitters.size() < most_submitters) job.submitters.push_back(who);
+  job.cancelled = stopping_;  // it may have been released by all others a moment ago
   if (who.priority <= job.priority) return;
   const bool waits = queue_.remove(job);
   job.priority = who.priority;

@@ -59,6 +59,20 @@ TEST_F(Submitters, cannot_end_what_others_asked_for) {
   EXPECT_EQ(service->wait(waits, patience_s)->status, "done");
 }
 
+TEST_F(Submitters, that_join_what_is_being_cancelled_get_it) {
+  start();
+  for (int i = 0; i < 20; ++i) {
+    const json body = request(64 + i, Behaviour::behaves, 60);
+    const std::string id = service->submit(body, holder("a")).id;
+    await_begin(id);
+    EXPECT_TRUE(service->release(id, {"a"}));
+    // The worker is stopped within some 20 ms: before, meanwhile or after.
+    std::this_thread::sleep_for(std::chrono::milliseconds(2 * i));
+    service->submit(body, holder("b", Priority::publication));
+    EXPECT_EQ(service->wait(id, patience_s)->status, "done") << i;
+  }
+}
+
 TEST_F(Submitters, that_ask_twice_are_one) {
   start();
   const json body = request(64, Behaviour::hangs);
