@@ -1,5 +1,6 @@
 #include "server/storage/database.h"
 
+#include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -12,6 +13,10 @@ namespace {
 
 constexpr int busy_ms = 3000;  // a lock held longer than this is somebody else's trouble
 constexpr std::size_t largest_batch = 64;  // changes that share one commit
+constexpr int purge_busy_ms = 20;          // answers wait no longer for a withdrawal to be cleared
+constexpr auto purge_pause = std::chrono::milliseconds(250);
+constexpr std::int64_t log_limit = 4
+                                   << 20;  // bytes that the write-ahead log keeps when it is reset
 
 int number_of(const EmbeddedFile& file) {
   const auto name = file.path.substr(file.path.rfind('/') + 1);
@@ -59,6 +64,7 @@ void Database::open_writer() {
   writer->exec("PRAGMA synchronous = FULL");
   writer->exec("PRAGMA foreign_keys = ON");
   writer->exec("PRAGMA secure_delete = ON");  // who withdraws leaves no bytes behind
+  writer->exec("PRAGMA journal_size_limit = " + std::to_string(log_limit));
   if (writer->execAndGet("PRAGMA quick_check").getString() != "ok") {
     damaged = true;
     throw Error("storage", "the database is damaged: restore a backup", "data");
@@ -76,6 +82,8 @@ Database::~Database() {
 }
 
 void Database::translate(const SQLite::Exception& error) {
+  ++failure_count;
+  spdlog::error("database: {} (code {})", error.what(), error.getExtendedErrorCode());
   switch (error.getErrorCode()) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -106,7 +114,18 @@ void Database::perform(const Change& change) {
 void Database::run_writer() {
   std::unique_lock lock(queue_mutex);
   while (true) {
-    queue_changed.wait(lock, [&] { return stopping || !queue.empty(); });
+    const auto has_work = [&] { return stopping || !queue.empty(); };
+    if (purge_wanted) {
+      queue_changed.wait_for(lock, purge_pause, has_work);
+    } else {
+      queue_changed.wait(lock, has_work);
+    }
+    if (queue.empty() && !stopping) {
+      lock.unlock();
+      clear_log();
+      lock.lock();
+      continue;
+    }
     if (queue.empty()) return;  // stopping, and everything accepted is written
     std::vector<Pending*> batch;
     while (!queue.empty() && batch.size() < largest_batch) {
@@ -115,6 +134,7 @@ void Database::run_writer() {
     }
     lock.unlock();
     run_batch(batch);
+    if (purge_wanted) clear_log();
     lock.lock();
     for (auto* pending : batch) pending->over = true;
     batch_over.notify_all();
@@ -136,11 +156,41 @@ void Database::run_batch(const std::vector<Pending*>& batch) {
       }
     }
     transaction.commit();
-    if (purge_wanted.exchange(false)) writer->exec("PRAGMA wal_checkpoint(TRUNCATE)");
   } catch (...) {
     for (auto* pending : batch)
       if (!pending->failure) pending->failure = std::current_exception();
   }
+}
+
+void Database::clear_log() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_purge) return;
+  try {
+    writer->setBusyTimeout(purge_busy_ms);
+    // The first column tells whether a reader kept a part of the log: then it is tried again.
+    if (writer->execAndGet("PRAGMA wal_checkpoint(TRUNCATE)").getInt() == 0) purge_wanted = false;
+  } catch (const SQLite::Exception& error) {
+    spdlog::warn("the write-ahead log cannot be cleared yet: {}", error.what());
+  }
+  writer->setBusyTimeout(busy_ms);
+  next_purge = std::chrono::steady_clock::now() + purge_pause;
+}
+
+void Database::probe() {
+  write([](SQLite::Database& connection) {
+    const int version = connection.execAndGet("PRAGMA user_version").getInt();
+    connection.exec("PRAGMA user_version = " + std::to_string(version));
+  });
+}
+
+std::string Database::damage_text() const {
+  return healthy() ? "" : "restore a backup";
+}
+
+std::uint64_t Database::log_bytes() const {
+  std::error_code failure;
+  const auto bytes = std::filesystem::file_size(path.string() + "-wal", failure);
+  return failure ? 0 : bytes;
 }
 
 Database::Lease::Lease(Database& owner_) : owner(owner_) {

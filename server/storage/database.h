@@ -4,6 +4,7 @@
 #include <SQLiteCpp/Savepoint.h>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -65,6 +66,18 @@ class Database {
 
   bool healthy() const { return !damaged.load(); }
 
+  /// Writes without changing anything. Throws as `write` does.
+  void probe();
+
+  /// Why it is not healthy; empty where it is.
+  std::string damage_text() const;
+
+  /// Failures of the database that were no fault of the call: full disk, lock, input/output.
+  std::uint64_t failures() const { return failure_count.load(); }
+
+  /// Length of the write-ahead log.
+  std::uint64_t log_bytes() const;
+
  private:
   using Change = std::function<void(SQLite::Database&)>;
   struct Pending {
@@ -85,6 +98,7 @@ class Database {
   void run_writer();
   void run_batch(const std::vector<Pending*>& batch);
   [[noreturn]] void translate(const SQLite::Exception& error);
+  void clear_log();
 
   template <class Work>
   auto guarded(Work work) {
@@ -97,8 +111,10 @@ class Database {
 
   std::filesystem::path path;
   std::atomic<bool> damaged{false};
+  std::atomic<std::uint64_t> failure_count{0};
   std::atomic<bool> purge_wanted{false};
   std::unique_ptr<SQLite::Database> writer;  ///< used by the writer's thread only
+  std::chrono::steady_clock::time_point next_purge{};
   std::mutex queue_mutex;
   std::condition_variable queue_changed;
   std::condition_variable batch_over;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
 #include <future>
 #include <set>
+#include <thread>
 
 #include "renderer/error.h"
 #include "server/storage/data_folder.h"
@@ -190,6 +193,30 @@ TEST_F(Participation, WithdrawalLeavesNoTrace) {
     EXPECT_EQ(read_file(folder.path / file).find("needle-in-the-file"), std::string::npos) << file;
   EXPECT_EQ(studies.counts("s", 1).withdrawn, 1);
   EXPECT_EQ(studies.counts("s", 1).entered, 0);
+}
+
+TEST_F(Participation, WithdrawalUnderAReaderIsQuickAndLeavesNoTraceOnceTheReaderLeft) {
+  const auto who = enter("a");
+  const auto other = enter("b");
+  answer(who, 0, "x", {{"secret", "needle-in-the-file"}});
+  {
+    SQLite::Database outside((folder.path / "db").string(), SQLite::OPEN_READONLY);
+    SQLite::Transaction snapshot(outside);
+    outside.execAndGet("SELECT COUNT(*) FROM answers");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_TRUE(participants.withdraw("code-a", "2026-01-04"));
+    answer(other, 0, "y", {{"shelf", 1}});
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  }
+  const auto left = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path))
+      if (read_file(entry.path()).find("needle-in-the-file") != std::string::npos) return true;
+    return false;
+  };
+  for (int i = 0; i < 50 && left(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(left());
+  EXPECT_EQ(participants.answers(other.key).size(), 1u);
 }
 
 TEST_F(Participation, TestsTakeNoPlaceAndAreNotCounted) {
