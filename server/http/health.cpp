@@ -8,7 +8,7 @@ namespace penumbra::server::http {
 namespace {
 
 constexpr auto interval = std::chrono::seconds(2);  // between two looks
-constexpr std::size_t room = 64 << 10;  // bytes: a disk without them is as good as full
+constexpr std::size_t room = 64 << 10;              // bytes: a disk without them is as good as full
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::string Health::trouble() {
 
 std::string Health::look() {
   if (auto found = storage_trouble(); !found.empty()) return found;
-  return worker_trouble();
+  return renders.trouble();
 }
 
 std::string Health::storage_trouble() {
@@ -48,14 +48,6 @@ std::string Health::storage_trouble() {
   const auto damaged = pictures.damaged();
   if (damaged == 0) return {};
   return std::to_string(damaged) + " pictures of open studies are damaged or missing";
-}
-
-std::string Health::worker_trouble() {
-  const auto state = renders.statistics();
-  if (state.value("breaker_open", false)) return "workers keep dying: rendering rests";
-  if (state.value("workers_started", 0) > 0 && state.value("workers_alive", 1) == 0)
-    return "no worker is alive";
-  return {};
 }
 
 }  // namespace penumbra::server::http

@@ -26,7 +26,6 @@ class Health {
  private:
   std::string look();
   std::string storage_trouble();
-  std::string worker_trouble();
 
   const storage::DataFolder& folder;
   storage::Database& database;

@@ -211,10 +211,10 @@ void get_picture(Call& call) {
       digest = frozen->picture(planned, number);
   }
   if (digest.empty()) throw nothing_here();
+  const auto png = call.service.pictures.read(digest);
   call.response.status = 200;
   call.response.set_header("Cache-Control", "private, max-age=86400");
-  call.response.set_content(storage::read_file(call.service.publisher.file_of(digest)),
-                            "image/png");
+  call.response.set_content(png, "image/png");
 }
 
 /// Answers about the person: those the study asks for, checked; a comment and the brightness check.

@@ -9,8 +9,6 @@
 #include "server/http/frozen_study.h"
 #include "server/http/png.h"
 #include "server/http/reply.h"
-#include "server/jobs/digest.h"
-#include "server/storage/data_folder.h"
 #include "study/study.h"
 
 namespace penumbra::server::http {
@@ -19,7 +17,8 @@ namespace {
 /// Thrown to leave a publication where it is; the next start goes on with it.
 struct Stopped {};
 
-constexpr double look_s = 1.0;  // how often a waiting publication looks whether to stop
+constexpr double look_s = 1.0;   // how often a waiting publication looks whether to stop
+constexpr double pause_s = 0.2;  // before the next try where queue, disk or database had no room
 
 }  // namespace
 
@@ -36,39 +35,75 @@ void Publisher::resume() {
   for (const auto& record : studies.being_published()) start(record);
 }
 
+void Publisher::resume(const storage::StudyRecord& publishing) {
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = publications.find(publishing.id);
+    if (found != publications.end() && !found->second->over) return;
+  }
+  start(publishing);
+}
+
 void Publisher::start(const storage::StudyRecord& record) {
   const std::lock_guard lock(mutex);
   if (stopping) return;
-  auto& thread = threads[record.id];
-  if (thread.joinable()) thread.join();  // the study was a draft again, so its thread is over
-  thread = std::thread([this, record] { run(record); });
+  auto& publication = publications[record.id];
+  // The study was a draft again, or its thread is over: nothing is waited for here.
+  if (publication && publication->thread.joinable()) publication->thread.join();
+  publication = std::make_unique<Publication>();
+  publication->thread = std::thread([this, record, &over = publication->over] {
+    run(record);
+    over = true;
+  });
 }
 
 void Publisher::stop() {
   stopping = true;
   const std::lock_guard lock(mutex);
-  for (auto& [id, thread] : threads)
-    if (thread.joinable()) thread.join();
+  for (auto& [id, publication] : publications)
+    if (publication->thread.joinable()) publication->thread.join();
+}
+
+void Publisher::insist(const std::string& doing, const std::function<void()>& step) {
+  std::string last;
+  while (true) {
+    if (stopping) throw Stopped{};
+    try {
+      return step();
+    } catch (const Error& error) {
+      if (error.code == "draining") throw Stopped{};
+      if (error.code != "busy" && error.code != "storage") throw;
+      if (error.what() != last) spdlog::warn("{} is tried again: {}", doing, error.what());
+      last = error.what();
+    }
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
+  }
 }
 
 void Publisher::run(const storage::StudyRecord& record) {
+  const auto name = "publication of study " + record.id;
   try {
     const auto study = study::parse_study(record.document);
-    std::filesystem::create_directories(pictures);
     const auto all = study::all_renders(study);
     for (const auto& request : all) submit(record, request);  // all workers have something to do
-    for (const auto& request : all) render_one(record, request);
-    studies.open(record.id, record.version, utc_now());
+    for (const auto& request : all) insist(name, [&] { render_one(record, request); });
+    insist(name, [&] {
+      for (const auto& [request, picture] : studies.pictures(record.id, record.version))
+        pictures.read(picture.digest);
+      studies.open(record.id, record.version, utc_now());
+    });
     spdlog::info("study {} version {} is open", record.id, record.version);
   } catch (const Stopped&) {
-    spdlog::info("publication of study {} goes on at the next start", record.id);
+    spdlog::info("{} goes on at the next start", name);
   } catch (...) {
     const Error error = error_of(std::current_exception());
     spdlog::error("study {} cannot be published: {}", record.id, error.what());
     try {
-      studies.fail_publishing(record.id, record.version, error_body(error).at("error"));
-    } catch (const Error& second) {
-      spdlog::error("and that cannot be stored: {}", second.what());
+      insist(name, [&] {
+        studies.fail_publishing(record.id, record.version, error_body(error).at("error"));
+      });
+    } catch (const Stopped&) {
+      spdlog::info("{} fails again at the next start", name);
     }
   }
 }
@@ -76,16 +111,9 @@ void Publisher::run(const storage::StudyRecord& record) {
 RenderRecord Publisher::submit(const storage::StudyRecord& record, const nlohmann::json& request) {
   // Participants wait for it, and nothing that others send may end it.
   const Submitter who{Priority::publication, record.id, {"publication of " + record.id}, {}};
-  while (true) {
-    if (stopping) throw Stopped{};
-    try {
-      return renders.submit(request, who);
-    } catch (const Error& error) {
-      if (error.code == "draining") throw Stopped{};
-      if (error.code != "busy") throw;
-      std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    }
-  }
+  RenderRecord submitted;
+  insist("a picture of study " + record.id, [&] { submitted = renders.submit(request, who); });
+  return submitted;
 }
 
 void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::json& request) {
@@ -106,10 +134,7 @@ void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::j
   }
   const auto png = renders.artefact(render.id, "image.png");
   if (!png) throw Error("storage", "the picture of " + render.id + " is gone");
-  const auto pixels = pixels_only(*png);
-  const auto digest = sha256(pixels);
-  if (!std::filesystem::exists(file_of(digest)))
-    storage::write_file_durably(file_of(digest), pixels);
+  const auto digest = pictures.freeze(pixels_only(*png));
   studies.count_picture(record.id, record.version, request_key(request), {render.id, digest});
 }
 

@@ -3,8 +3,10 @@
 #include <atomic>
 #include <memory>
 
+#include "server/http/frozen_pictures.h"
 #include "server/http/frozen_study.h"
 #include "server/http/guard.h"
+#include "server/http/health.h"
 #include "server/http/metrics.h"
 #include "server/http/publisher.h"
 #include "server/http/serve.h"
@@ -31,6 +33,7 @@ struct Service {
   std::unique_ptr<RenderService> renders;
   SceneReader scene_reader;
   FrozenStudies frozen;
+  FrozenPictures pictures;
   Metrics metrics;
   RateLimiter failures{30, 0.5};     ///< wrong tokens and codes
   RateLimiter enrolments{120, 1};    ///< per client behind the proxy: a lab shares one address
@@ -39,9 +42,10 @@ struct Service {
   std::atomic<bool> draining{false};
   Publisher publisher;
   Sweeps sweeps;
+  Health health;
 
   /// Empty when requests can be served, else why not.
-  std::string not_ready() const;
+  std::string not_ready();
 
   /// Numbers for /metrics.
   nlohmann::json gauges();

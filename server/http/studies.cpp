@@ -100,6 +100,7 @@ void publish_study(Call& call) {
   if (record.status == "closed")
     throw Error("conflict", "the study is closed; store a new version first", "status");
   if (record.status == "draft") call.service.publisher.publish(record);
+  if (record.status == "publishing") call.service.publisher.resume(record);
   send_json(call.response, record.status == "open" ? 200 : 202,
             body_of(call.service, study_at(call)));
 }

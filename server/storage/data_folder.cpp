@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -19,6 +20,8 @@ Error storage_error(const std::string& doing, const std::filesystem::path& file)
   return {"storage", doing + " " + file.string() + ": " + std::strerror(errno)};
 }
 
+constexpr const char* unfinished = ".part";  // in the names of files being written
+
 /// Closes a descriptor at the end of its block.
 struct Descriptor {
   int value;
@@ -32,10 +35,12 @@ struct Descriptor {
 DataFolder::DataFolder(std::filesystem::path path) : root(std::move(path)) {
   std::error_code failure;
   if (!std::filesystem::exists(root, failure)) {
-    std::filesystem::create_directories(root, failure);
-    if (failure)
-      throw bad_value("data", "cannot create " + root.string() + ": " + failure.message());
-    std::filesystem::permissions(root, std::filesystem::perms::owner_all, failure);
+    std::filesystem::create_directories(root.parent_path(), failure);
+    try {
+      make_private_folder(root);
+    } catch (const Error& error) {
+      throw bad_value("data", error.what());
+    }
   }
   const auto file = root / "lock";
   lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -51,10 +56,23 @@ DataFolder::~DataFolder() {
   if (lock >= 0) ::close(lock);
 }
 
+void make_private_folder(const std::filesystem::path& folder) {
+  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+    throw storage_error("cannot create", folder);
+  if (::chmod(folder.c_str(), 0700) != 0) throw storage_error("cannot close to others", folder);
+}
+
+void sweep_unfinished(const std::filesystem::path& folder) {
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
+    if (entry.path().filename().string().find(unfinished) != std::string::npos)
+      std::filesystem::remove(entry.path(), failure);
+}
+
 void write_file_durably(const std::filesystem::path& file, const std::string& bytes,
                         unsigned mode) {
   static std::atomic<unsigned> counter{0};
-  const auto temporary = file.string() + ".part" + std::to_string(::getpid()) + "-" +
+  const auto temporary = file.string() + unfinished + std::to_string(::getpid()) + "-" +
                          std::to_string(counter.fetch_add(1));
   {
     Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode)};

@@ -27,6 +27,12 @@ class DataFolder {
 void write_file_durably(const std::filesystem::path& file, const std::string& bytes,
                         unsigned mode = 0600);
 
+/// Makes a folder that its owner alone may enter, whatever the umask. Throws Error `storage`.
+void make_private_folder(const std::filesystem::path& folder);
+
+/// Removes what `write_file_durably` left half written when its process was killed.
+void sweep_unfinished(const std::filesystem::path& folder);
+
 /// Bytes of a file. Throws Error `storage`.
 std::string read_file(const std::filesystem::path& file);
 

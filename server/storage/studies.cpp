@@ -40,6 +40,12 @@ std::vector<StudyRecord> all(SQLite::Statement& query) {
   return records;
 }
 
+std::vector<std::string> texts(SQLite::Statement& query) {
+  std::vector<std::string> found;
+  while (query.executeStep()) found.push_back(query.getColumn(0).getString());
+  return found;
+}
+
 /// Runs a statement that must change a row; otherwise the state was another than expected.
 void change_one(SQLite::Statement& statement, const std::string& otherwise) {
   if (statement.exec() != 1) throw Error("conflict", otherwise, "status");
@@ -228,17 +234,22 @@ std::map<std::string, FrozenPicture> Studies::pictures(const std::string& id, in
   });
 }
 
-std::optional<FrozenPicture> Studies::picture(const std::string& id, int version,
-                                              const std::string& request) {
-  return database.read([&](SQLite::Database& connection) -> std::optional<FrozenPicture> {
+std::vector<std::string> Studies::digests_of_open() {
+  return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection,
-                            "SELECT render, digest FROM pictures "
-                            "WHERE study = ? AND version = ? AND request = ?");
-    query.bind(1, id);
-    query.bind(2, version);
-    query.bind(3, request);
-    if (!query.executeStep()) return std::nullopt;
-    return FrozenPicture{query.getColumn(0).getString(), query.getColumn(1).getString()};
+                            "SELECT DISTINCT p.digest FROM pictures AS p JOIN studies AS s "
+                            "ON s.study = p.study AND s.version = p.version "
+                            "WHERE s.status = 'open' ORDER BY 1");
+    return texts(query);
+  });
+}
+
+std::vector<std::string> Studies::renders_of_picture(const std::string& digest) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection,
+                            "SELECT DISTINCT render FROM pictures WHERE digest = ? ORDER BY 1");
+    query.bind(1, digest);
+    return texts(query);
   });
 }
 

@@ -71,8 +71,10 @@ class Studies {
 
   /// By the SHA-256 of the render request's JSON.
   std::map<std::string, FrozenPicture> pictures(const std::string& id, int version);
-  std::optional<FrozenPicture> picture(const std::string& id, int version,
-                                       const std::string& request);
+  /// Digests of all pictures of open versions.
+  std::vector<std::string> digests_of_open();
+  /// Renders that a picture was frozen from.
+  std::vector<std::string> renders_of_picture(const std::string& digest);
   StudyCounts counts(const std::string& id, int version);
 
  private:
