@@ -23,6 +23,12 @@ std::filesystem::path work_folder(const Call& call) {
   return call.service.folder.path() / "tmp";
 }
 
+void tell_damage(Call& call) {
+  const auto damage = call.service.database.damage();
+  if (!damage.empty())
+    call.response.set_header("Penumbra-Damaged-Rows", std::to_string(damage.size()));
+}
+
 /// Sends a file piece by piece. It is unlinked at once: what was opened stays until it was sent.
 void send_download(Call& call, const TemporaryFile& file, const std::string& type,
                    const std::string& name) {
@@ -31,6 +37,7 @@ void send_download(Call& call, const TemporaryFile& file, const std::string& typ
   if (!*stream) throw Error("storage", "the export cannot be read back");
   call.response.status = 200;
   call.response.set_header("Content-Disposition", "attachment; filename=\"" + name + "\"");
+  tell_damage(call);
   call.response.set_content_provider(
       size, type, [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         std::string piece(std::min<std::size_t>(length, 256 << 10), '\0');
@@ -54,12 +61,13 @@ void get_responses(Call& call) {
 
 void get_results(Call& call) {
   send_json(call.response, 200, export_at(call).results());
+  tell_damage(call);
 }
 
 void get_export(Call& call) {
   auto exported = export_at(call);
   const TemporaryFile file(work_folder(call), ".zip");
-  exported.write_archive(file.path(), work_folder(call));
+  exported.write_archive(file.path(), work_folder(call), call.service.database.damage());
   send_download(call, file, "application/zip", download_name(call, "export.zip"));
 }
 

@@ -14,11 +14,13 @@ const FrozenStudy::PagePictures& pictures_of(const FrozenStudy& frozen,
 FrozenStudy::PagePictures page_pictures(const study::Study& study, const study::Page& page,
                                         const std::map<std::string, storage::FrozenPicture>& all) {
   const auto renders = study::page_renders(study, page);
+  const auto digest_of = [&](const nlohmann::json& request) {
+    const auto frozen = all.find(request_key(request));
+    return frozen == all.end() ? std::string("lost") : frozen->second.digest;
+  };
   FrozenStudy::PagePictures found;
-  for (const auto& request : renders.pictures)
-    found.digests.push_back(all.at(request_key(request)).digest);
-  if (renders.shown_reference)
-    found.reference = all.at(request_key(*renders.shown_reference)).digest;
+  for (const auto& request : renders.pictures) found.digests.push_back(digest_of(request));
+  if (renders.shown_reference) found.reference = digest_of(*renders.shown_reference);
   return found;
 }
 

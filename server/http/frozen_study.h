@@ -24,7 +24,8 @@ struct FrozenStudy {
     return study::plan_enrolment(study, seed, place);
   }
 
-  /// SHA-256 of the picture at a slot; empty where there is no such slot.
+  /// SHA-256 of the picture at a slot, or "lost" where the database's row is damaged; empty where
+  /// there is no such slot.
   std::string picture(const study::PlannedPage& planned, std::size_t slot) const;
   /// SHA-256 of the reference shown beside the pictures; empty where none is.
   std::string reference(const study::PlannedPage& planned) const;

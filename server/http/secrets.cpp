@@ -2,11 +2,8 @@
 
 #include <openssl/crypto.h>
 #include <openssl/evp.h>
-#include <openssl/hmac.h>
-#include <openssl/rand.h>
 #include <spdlog/spdlog.h>
 
-#include <array>
 #include <cstring>
 #include <set>
 #include <vector>
@@ -17,21 +14,9 @@
 namespace penumbra::server::http {
 namespace {
 
-std::vector<unsigned char> random_bytes(std::size_t count) {
-  std::vector<unsigned char> bytes(count);
-  if (RAND_bytes(bytes.data(), static_cast<int>(count)) != 1)
-    throw Error("storage", "the system's random source failed");
-  return bytes;
-}
-
-std::string hexadecimal(const unsigned char* bytes, std::size_t count) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) {
-    text += digits[bytes[i] >> 4];
-    text += digits[bytes[i] & 15];
-  }
-  return text;
+std::vector<unsigned char> random_numbers(std::size_t count) {
+  const auto bytes = random_bytes(count);
+  return {bytes.begin(), bytes.end()};
 }
 
 /// Who may write the file chooses the token; who may read it has it.
@@ -50,7 +35,7 @@ void check_permissions(const std::filesystem::path& file) {
 }  // namespace
 
 std::string random_token(std::size_t bytes) {
-  const auto raw = random_bytes(bytes);
+  const auto raw = random_numbers(bytes);
   std::string text(4 * ((bytes + 2) / 3) + 1, '\0');
   const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), raw.data(),
                                      static_cast<int>(bytes));
@@ -61,17 +46,17 @@ std::string random_token(std::size_t bytes) {
 }
 
 std::uint64_t random_seed() {
-  const auto raw = random_bytes(sizeof(std::uint64_t));
+  const auto raw = random_numbers(sizeof(std::uint64_t));
   std::uint64_t value = 0;
   std::memcpy(&value, raw.data(), sizeof value);
   return value >> 11;
 }
 
 std::string random_uuid() {
-  auto raw = random_bytes(16);
+  auto raw = random_numbers(16);
   raw[6] = static_cast<unsigned char>((raw[6] & 0x0f) | 0x40);
   raw[8] = static_cast<unsigned char>((raw[8] & 0x3f) | 0x80);
-  const auto digits = hexadecimal(raw.data(), raw.size());
+  const auto digits = hexadecimal({reinterpret_cast<const char*>(raw.data()), raw.size()});
   return digits.substr(0, 8) + "-" + digits.substr(8, 4) + "-" + digits.substr(12, 4) + "-" +
          digits.substr(16, 4) + "-" + digits.substr(20);
 }
@@ -84,7 +69,7 @@ std::string random_code(std::size_t groups) {
   std::string code;
   while (code.size() < groups * (group_length + 1) - 1) {
     if (code.size() % (group_length + 1) == group_length) code += '-';
-    const unsigned value = random_bytes(1).front();
+    const unsigned value = random_numbers(1).front();
     if (value < fair) code += alphabet[value % alphabet.size()];
   }
   return code;
@@ -92,14 +77,6 @@ std::string random_code(std::size_t groups) {
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
-}
-
-std::string keyed_digest(std::string_view key, std::string_view text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned length = 0;
-  HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
-       reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest.data(), &length);
-  return hexadecimal(digest.data(), length);
 }
 
 std::string researcher_token(const std::filesystem::path& file) {

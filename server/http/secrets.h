@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/jobs/digest.h"
+
 namespace penumbra::server::http {
 
 /// `bytes` bytes of the operating system's random source in base64url without padding.
@@ -22,9 +24,6 @@ std::string random_code(std::size_t groups);
 
 /// Compares in a time that depends on the lengths only.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
-
-/// HMAC-SHA256 in hexadecimal digits.
-std::string keyed_digest(std::string_view key, std::string_view text);
 
 /// The researcher's token: from the file, which is made with a random one where it is missing (mode
 /// 0600). Throws Error bad_value (field token_file) for less than 16 characters.

@@ -21,27 +21,16 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
       renders(make_renders()),
       scene_reader({options.worker_command, 0, options.import_deadline_s}),
       frozen(studies),
-<<<<<<< HEAD
-      publisher(studies, *renders, folder.path() / "pictures"),
-      sweeps(database, *renders) {
-  sweep_uploads(folder.path());
-}
-=======
       pictures(studies, *renders, folder.path() / "pictures"),
       publisher(studies, *renders, pictures),
       sweeps(database, *renders),
-      health(folder, database, pictures, *renders) {}
->>>>>>> 02f2cfc (Show only the pictures that a study was opened with, and say what fails)
+      health(folder, database, pictures, *renders) {
+  sweep_uploads(folder.path());
+}
 
 std::string Service::not_ready() {
   if (draining) return "draining";
-<<<<<<< HEAD
-  if (!database.healthy()) return "the database is damaged: restore a backup";
-  if (const std::string trouble = renders->trouble(); !trouble.empty()) return trouble;
-  return {};
-=======
   return health.trouble();
->>>>>>> 02f2cfc (Show only the pictures that a study was opened with, and say what fails)
 }
 
 nlohmann::json Service::gauges() {
@@ -52,6 +41,7 @@ nlohmann::json Service::gauges() {
                             {"storage",
                              {{"failures", database.failures()},
                               {"wal_bytes", database.log_bytes()},
+                              {"damaged_rows", database.damage().size()},
                               {"damaged_pictures", pictures.damaged()}}},
                             {"participants", nlohmann::json::object()}};
   if (!database.healthy()) return numbers;

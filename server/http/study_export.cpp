@@ -159,6 +159,14 @@ std::map<std::string, std::string> flag_names(const json& flags) {
   return names;
 }
 
+std::string damaged_csv(const std::vector<storage::Damage>& damage) {
+  std::string text = "participant,table,row,damage\r\n";
+  for (const auto& one : damage)
+    text += study::csv_text(one.participant) + "," + study::csv_text(one.table) + "," +
+            std::to_string(one.row) + "," + study::csv_text(one.what) + "\r\n";
+  return text;
+}
+
 }  // namespace
 
 TemporaryFile::TemporaryFile(const fs::path& folder, const std::string& extension) {
@@ -224,7 +232,8 @@ void StudyExport::write_responses(const fs::path& file) {
   responses.finish();
 }
 
-void StudyExport::write_archive(const fs::path& archive, const fs::path& work) {
+void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
+                                const std::vector<storage::Damage>& damage) {
   analyse();
   const TemporaryFile responses_file(work, ".csv");
   const TemporaryFile wide_file(work, ".csv");
@@ -279,6 +288,7 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work) {
   zip.add_file("participants.csv", participants_file.path());
   zip.add_text("codebook.csv", study::write_codebook(frozen->study));
   zip.add_file("responses.json", json_file.path());
+  if (!damage.empty()) zip.add_text("damaged.csv", damaged_csv(damage));
   zip.add_text("study.json", scenes::json_text(frozen->study.document, 2) + "\n");
   for (const auto& file : study::report_files()) {
     const fs::path name = fs::path(file.path).filename();

@@ -43,8 +43,10 @@ class StudyExport {
   /// responses.csv, practice pages and previews left out.
   void write_responses(const std::filesystem::path& file);
 
-  /// export.zip, with parts in `work`, a folder on the same disk, while it is made.
-  void write_archive(const std::filesystem::path& archive, const std::filesystem::path& work);
+  /// export.zip, with parts in `work`, a folder on the same disk, while it is made. What is left
+  /// out since it is damaged is told in damaged.csv.
+  void write_archive(const std::filesystem::path& archive, const std::filesystem::path& work,
+                     const std::vector<storage::Damage>& damage = {});
 
  private:
   using TakePerson = std::function<void(const storage::ParticipantData&,

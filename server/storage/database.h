@@ -18,6 +18,9 @@
 #include <vector>
 
 #include "renderer/embedded_file.h"
+#include "server/storage/examination.h"
+#include "server/storage/journal.h"
+#include "server/storage/seals.h"
 
 namespace penumbra::server::storage {
 
@@ -28,10 +31,15 @@ namespace penumbra::server::storage {
 /// people who answer at once pay for one sync of the disk and not for hundreds. `write` returns
 /// after the commit: what it returned from is durable (WAL, synchronous=FULL).
 ///
+/// Rows carry keyed digests, and a journal beside the database knows which rows there must be
+/// (docs/decisions/0011-damage-is-seen.md). A write returns after both are on disk.
+///
 /// Failures become penumbra::Error: `busy` (locked too long), `storage` (disk full, input/output,
 /// damage). After damage was seen, `healthy` is false and every write is refused.
 class Database {
  public:
+  /// Beside `file` lie integrity.key and answers.journal, which are made for a new database. What
+  /// is damaged is opened for reading: see `healthy`.
   explicit Database(const std::filesystem::path& file);
   ~Database();
   Database(const Database&) = delete;
@@ -71,6 +79,10 @@ class Database {
 
   /// Why it is not healthy; empty where it is.
   std::string damage_text() const;
+  /// What was found damaged, at the start or since.
+  std::vector<Damage> damage() const;
+  /// Notes damage that a reader met.
+  void report(const Damage& found);
 
   /// Failures of the database that were no fault of the call: full disk, lock, input/output.
   std::uint64_t failures() const { return failure_count.load(); }
@@ -94,6 +106,12 @@ class Database {
   };
 
   void open_writer();
+  bool holds_a_study() const;
+  [[noreturn]] void refuse(const std::string& why);
+  void check_rows();
+  RowSeals enter_ledger();
+  void log_rest();
+  void prepare(SQLite::Database& connection) const;
   void perform(const Change& change);
   void run_writer();
   void run_batch(const std::vector<Pending*>& batch);
@@ -110,6 +128,15 @@ class Database {
   }
 
   std::filesystem::path path;
+  std::optional<Seals> seals;
+  std::optional<Journal> journal;
+  RowChanged note_row;        ///< of the triggers
+  RowSeals touched;           ///< rows of the batch at hand
+  RowSeals unlogged;          ///< rows of commits that the journal lacks
+  std::uint64_t commits = 0;  ///< as the ledger has it
+  std::uint64_t logged = 0;   ///< the journal's last commit
+  mutable std::mutex damage_mutex;
+  std::vector<Damage> damages;
   std::atomic<bool> damaged{false};
   std::atomic<std::uint64_t> failure_count{0};
   std::atomic<bool> purge_wanted{false};

@@ -2,66 +2,32 @@
 
 #include "renderer/error.h"
 #include "server/jobs/digest.h"
+#include "server/storage/participant_rows.h"
 
 namespace penumbra::server::storage {
 namespace {
 
-using study::PlaceState;
-
-constexpr const char* columns =
-    "id, pseudonym, study, version, place, test, token, withdrawal_code, enrolment_id, language, "
-    "consent_version, parameters, details, entered_at, completed_at";
-
-ParticipantRecord record_of(SQLite::Statement& row) {
-  ParticipantRecord record;
-  record.key = row.getColumn(0).getInt64();
-  record.pseudonym = row.getColumn(1).getString();
-  record.study = row.getColumn(2).getString();
-  record.version = row.getColumn(3).getInt();
-  record.place = static_cast<std::size_t>(row.getColumn(4).getInt64());
-  record.test = row.getColumn(5).getInt() != 0;
-  record.token = row.getColumn(6).getString();
-  record.withdrawal_code = row.getColumn(7).getString();
-  record.enrolment_id = row.getColumn(8).getString();
-  record.language = row.getColumn(9).getString();
-  record.consent_version = row.getColumn(10).getString();
-  record.parameters = nlohmann::json::parse(row.getColumn(11).getString());
-  record.details = nlohmann::json::parse(row.getColumn(12).getString());
-  record.entered_at = row.getColumn(13).getString();
-  if (!row.getColumn(14).isNull()) record.completed_at = row.getColumn(14).getString();
-  return record;
-}
-
-std::optional<ParticipantRecord> find_where(SQLite::Database& connection,
-                                            const std::string& condition, const std::string& a,
-                                            const std::string& b = {}) {
+/// study::next_place, found in indexes: the first place that nobody holds any more, or a new one.
+/// Looking at every place would make a study's enrolments cost the square of their number.
+std::size_t next_place(SQLite::Database& connection, const ParticipantRecord& fresh,
+                       const std::string& abandoned_before) {
   SQLite::Statement query(
-      connection, std::string("SELECT ") + columns + " FROM participants WHERE " + condition);
-  query.bind(1, a);
-  if (!b.empty()) query.bind(2, b);
-  if (!query.executeStep()) return std::nullopt;
-  return record_of(query);
-}
-
-/// States of all places of a version; places of people who withdrew stay dropped.
-std::vector<PlaceState> place_states(SQLite::Database& connection, const ParticipantRecord& fresh,
-                                     const std::string& abandoned_before) {
-  SQLite::Statement query(connection,
-                          "SELECT place, completed_at IS NOT NULL, seen_at >= ? FROM participants "
-                          "WHERE study = ? AND version = ? AND test = 0 AND holds_place = 1");
-  query.bind(1, abandoned_before);
-  query.bind(2, fresh.study);
-  query.bind(3, fresh.version);
-  std::vector<PlaceState> places;
-  while (query.executeStep()) {
-    const auto place = static_cast<std::size_t>(query.getColumn(0).getInt64());
-    if (places.size() <= place) places.resize(place + 1, PlaceState::dropped);
-    if (query.getColumn(1).getInt() != 0)
-      places[place] = PlaceState::completed;
-    else if (query.getColumn(2).getInt() != 0)
-      places[place] = PlaceState::open;
-  }
-  return places;
+      connection,
+      "SELECT MIN(place) FROM ("
+      "SELECT place FROM participants WHERE study = ?1 AND version = ?2 AND test = 0 AND "
+      "holds_place = 1 AND completed_at IS NULL AND seen_at < ?3 "
+      "UNION ALL "
+      "SELECT w.place FROM withdrawals AS w WHERE w.study = ?1 AND w.version = ?2 AND "
+      "w.place IS NOT NULL AND NOT EXISTS (SELECT 1 FROM participants AS p WHERE p.study = ?1 AND "
+      "p.version = ?2 AND p.place = w.place AND p.holds_place = 1 AND p.test = 0) "
+      "UNION ALL "
+      "SELECT COALESCE((SELECT MAX(place) + 1 FROM participants WHERE study = ?1 AND version = ?2 "
+      "AND holds_place = 1 AND test = 0), 0))");
+  query.bind(1, fresh.study);
+  query.bind(2, fresh.version);
+  query.bind(3, abandoned_before);
+  query.executeStep();
+  return static_cast<std::size_t>(query.getColumn(0).getInt64());
 }
 
 void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fresh,
@@ -95,8 +61,7 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
     tests.executeStep();
     return static_cast<std::size_t>(tests.getColumn(0).getInt64());
   }
-  const auto states = place_states(connection, fresh, abandoned_before);
-  const auto place = study::next_place(states);
+  const auto place = next_place(connection, fresh, abandoned_before);
   SQLite::Statement release(connection,
                             "UPDATE participants SET holds_place = 0 WHERE study = ? AND "
                             "version = ? AND place = ? AND test = 0");
@@ -108,44 +73,62 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
 }
 
 /// The current answers of a participant, or those that were replaced.
-std::vector<AnswerRecord> answers_of(SQLite::Database& connection, std::int64_t participant,
-                                     bool current) {
+std::vector<AnswerRecord> answers_of(Database& database, SQLite::Database& connection,
+                                     std::int64_t participant, bool current) {
   SQLite::Statement query(connection,
-                          "SELECT page, answer_id, body, answered_at FROM answers "
-                          "WHERE participant = ? AND is_current = ? ORDER BY page, id");
+                          "SELECT page, answer_id, body, answered_at, intact, row "
+                          "FROM checked_answers "
+                          "WHERE participant = ? AND is_current = ? ORDER BY page, row");
   query.bind(1, participant);
   query.bind(2, current ? 1 : 0);
   std::vector<AnswerRecord> found;
-  while (query.executeStep())
+  while (query.executeStep()) {
+    if (query.getColumn(4).getInt() == 0) {
+      report_row(database, connection, "answers", query.getColumn(5).getInt64());
+      continue;
+    }
     found.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
                      nlohmann::json::parse(query.getColumn(2).getString()),
                      query.getColumn(3).getString()});
+  }
   return found;
 }
 
-std::vector<Exclusion> exclusions_of(SQLite::Database& connection, std::int64_t participant) {
+std::vector<Exclusion> exclusions_of(Database& database, SQLite::Database& connection,
+                                     std::int64_t participant) {
   SQLite::Statement query(connection,
-                          "SELECT excluded, reason, decided_at FROM exclusions "
+                          "SELECT excluded, reason, decided_at, intact, row "
+                          "FROM checked_exclusions "
                           "WHERE participant = ? ORDER BY id");
   query.bind(1, participant);
   std::vector<Exclusion> found;
-  while (query.executeStep())
+  while (query.executeStep()) {
+    if (query.getColumn(3).getInt() == 0) {
+      report_row(database, connection, "exclusions", query.getColumn(4).getInt64());
+      continue;
+    }
     found.push_back({query.getColumn(0).getInt() != 0, query.getColumn(1).getString(),
                      query.getColumn(2).getString()});
+  }
   return found;
 }
 
-/// Throws where the person may not answer any more.
+/// Throws where the person may not answer any more. Who was amid a version when the next one opened
+/// may finish it.
 void check_answerable(SQLite::Database& connection, const ParticipantRecord& participant) {
-  SQLite::Statement query(connection,
-                          "SELECT p.completed_at IS NOT NULL, s.status FROM participants AS p "
-                          "JOIN studies AS s ON s.study = p.study AND s.version = p.version "
-                          "WHERE p.id = ?");
+  SQLite::Statement query(
+      connection,
+      "SELECT p.completed_at IS NOT NULL, s.status, EXISTS (SELECT 1 FROM studies AS n "
+      "WHERE n.study = s.study AND n.version > s.version AND n.status = 'open' AND "
+      "n.opened_at = s.closed_at) "
+      "FROM participants AS p JOIN studies AS s ON s.study = p.study AND s.version = p.version "
+      "WHERE p.id = ?");
   query.bind(1, participant.key);
   if (!query.executeStep()) throw not_found("participant", "there is nothing at this address");
   if (query.getColumn(0).getInt() != 0)
     throw Error("conflict", "the study was completed already", "participant");
-  if (query.getColumn(1).getString() != "open")
+  const bool superseded = query.getColumn(2).getInt() != 0;
+  if (query.getColumn(1).getString() != "open" && !superseded)
     throw Error("conflict", "the study is closed", "study");
 }
 
@@ -178,8 +161,8 @@ int pages_answered(SQLite::Database& connection, std::int64_t participant) {
 ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint32_t quota,
                                       const std::string& abandoned_before) {
   return database.write([&](SQLite::Database& connection) {
-    if (const auto known = find_where(connection, "study = ? AND enrolment_id = ?", fresh.study,
-                                      fresh.enrolment_id))
+    if (const auto known = find_where(database, connection, "study = ? AND enrolment_id = ?",
+                                      fresh.study, fresh.enrolment_id))
       return *known;
     check_enrolment(connection, fresh, quota);
     ParticipantRecord record = fresh;
@@ -212,13 +195,14 @@ ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint3
 
 std::optional<ParticipantRecord> Participants::find(const std::string& token) {
   return database.read([&](SQLite::Database& connection) {
-    return find_where(connection, "token_hash = ?", sha256(token));
+    return find_where(database, connection, "token_hash = ?", sha256(token));
   });
 }
 
 std::vector<AnswerRecord> Participants::answers(std::int64_t participant) {
-  return database.read(
-      [&](SQLite::Database& connection) { return answers_of(connection, participant, true); });
+  return database.read([&](SQLite::Database& connection) {
+    return answers_of(database, connection, participant, true);
+  });
 }
 
 nlohmann::json Participants::answer(
@@ -226,12 +210,13 @@ nlohmann::json Participants::answer(
     const std::function<bool(const nlohmann::json&)>& same,
     const std::function<nlohmann::json(const std::string&, int)>& make_reply) {
   return database.write([&](SQLite::Database& connection) {
-    SQLite::Statement known(
-        connection,
-        "SELECT page, body, reply FROM answers WHERE participant = ? AND answer_id = ?");
+    SQLite::Statement known(connection,
+                            "SELECT page, body, reply, intact FROM checked_answers "
+                            "WHERE participant = ? AND answer_id = ?");
     known.bind(1, participant.key);
     known.bind(2, fresh.answer_id);
     if (known.executeStep()) {
+      if (known.getColumn(3).getInt() == 0) throw damaged_row();
       const bool repeated = known.getColumn(0).getInt() == fresh.page &&
                             same(nlohmann::json::parse(known.getColumn(1).getString()));
       if (!repeated)
@@ -286,7 +271,7 @@ void Participants::complete(const ParticipantRecord& participant, int pages,
 
 bool Participants::withdraw(const std::string& code, const std::string& now) {
   return database.write([&](SQLite::Database& connection) {
-    const auto person = find_where(connection, "withdrawal_code = ?", code);
+    const auto person = find_where(database, connection, "withdrawal_code = ?", code);
     if (!person) return false;
     SQLite::Statement remove(connection, "DELETE FROM participants WHERE id = ?");
     remove.bind(1, person->key);
@@ -294,10 +279,12 @@ bool Participants::withdraw(const std::string& code, const std::string& now) {
     database.purge_log();
     if (person->test) return true;
     SQLite::Statement note(
-        connection, "INSERT INTO withdrawals (study, version, withdrawn_at) VALUES (?, ?, ?)");
+        connection,
+        "INSERT INTO withdrawals (study, version, withdrawn_at, place) VALUES (?, ?, ?, ?)");
     note.bind(1, person->study);
     note.bind(2, person->version);
     note.bind(3, now);
+    note.bind(4, static_cast<std::int64_t>(person->place));
     note.exec();
     return true;
   });
@@ -306,7 +293,8 @@ bool Participants::withdraw(const std::string& code, const std::string& now) {
 bool Participants::exclude(const std::string& study, const std::string& pseudonym,
                            const Exclusion& decision) {
   return database.write([&](SQLite::Database& connection) {
-    const auto person = find_where(connection, "study = ? AND pseudonym = ?", study, pseudonym);
+    const auto person =
+        find_where(database, connection, "study = ? AND pseudonym = ?", study, pseudonym);
     if (!person) return false;
     SQLite::Statement insert(connection,
                              "INSERT INTO exclusions (participant, excluded, reason, decided_at) "
@@ -325,26 +313,32 @@ void Participants::each(const std::string& study, int version,
   constexpr int portion = 200;
   std::int64_t last = 0;
   while (true) {
+    int seen = 0;
     const auto people = database.read([&](SQLite::Database& connection) {
-      SQLite::Statement query(connection, std::string("SELECT ") + columns +
-                                              " FROM participants WHERE study = ? AND version = ? "
-                                              "AND id > ? ORDER BY id LIMIT ?");
+      SQLite::Statement query(connection,
+                              std::string("SELECT ") + participant_columns +
+                                  " FROM checked_participants WHERE study = ? AND version = ? "
+                                  "AND id > ? ORDER BY id LIMIT ?");
       query.bind(1, study);
       query.bind(2, version);
       query.bind(3, last);
       query.bind(4, portion);
       std::vector<ParticipantData> found;
-      while (query.executeStep()) found.push_back({record_of(query), {}, {}, {}});
+      while (query.executeStep()) {
+        ++seen;
+        last = query.getColumn(0).getInt64();
+        if (const auto record = participant_of_row(database, query))
+          found.push_back({*record, {}, {}, {}});
+      }
       for (auto& person : found) {
-        person.answers = answers_of(connection, person.participant.key, true);
-        person.replaced = answers_of(connection, person.participant.key, false);
-        person.exclusions = exclusions_of(connection, person.participant.key);
+        person.answers = answers_of(database, connection, person.participant.key, true);
+        person.replaced = answers_of(database, connection, person.participant.key, false);
+        person.exclusions = exclusions_of(database, connection, person.participant.key);
       }
       return found;
     });
     for (const auto& person : people) take(person);
-    if (people.size() < portion) return;
-    last = people.back().participant.key;
+    if (seen < portion) return;
   }
 }
 

@@ -7,13 +7,18 @@ namespace {
 
 constexpr const char* columns =
     "study, version, status, document, hash, seed, pictures_done, pictures_total, error, "
-    "created_at";
+    "created_at, intact, row";
 
 std::string select(const std::string& condition) {
-  return std::string("SELECT ") + columns + " FROM studies " + condition;
+  return std::string("SELECT ") + columns + " FROM checked_studies " + condition;
 }
 
-StudyRecord record_of(SQLite::Statement& row) {
+/// Throws Error `storage` where the row is damaged, which is reported.
+StudyRecord record_of(Database& database, SQLite::Statement& row) {
+  if (row.getColumn(10).getInt() == 0) {
+    database.report({"studies", row.getColumn(11).getInt64(), "", unfit});
+    throw Error("storage", "the study is damaged; restore a backup");
+  }
   StudyRecord record;
   record.id = row.getColumn(0).getString();
   record.version = row.getColumn(1).getInt();
@@ -29,14 +34,14 @@ StudyRecord record_of(SQLite::Statement& row) {
   return record;
 }
 
-std::optional<StudyRecord> first(SQLite::Statement& query) {
+std::optional<StudyRecord> first(Database& database, SQLite::Statement& query) {
   if (!query.executeStep()) return std::nullopt;
-  return record_of(query);
+  return record_of(database, query);
 }
 
-std::vector<StudyRecord> all(SQLite::Statement& query) {
+std::vector<StudyRecord> all(Database& database, SQLite::Statement& query) {
   std::vector<StudyRecord> records;
-  while (query.executeStep()) records.push_back(record_of(query));
+  while (query.executeStep()) records.push_back(record_of(database, query));
   return records;
 }
 
@@ -58,7 +63,7 @@ StudyRecord Studies::put_draft(const std::string& id, const nlohmann::json& docu
   return database.write([&](SQLite::Database& connection) {
     SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
     query.bind(1, id);
-    const auto present = first(query);
+    const auto present = first(database, query);
     if (present && present->status == "publishing")
       throw Error("conflict", "study " + id + " is being published", "status");
     StudyRecord record;
@@ -92,7 +97,7 @@ std::vector<StudyRecord> Studies::list() {
     SQLite::Statement query(connection,
                             select("AS s WHERE version = (SELECT MAX(version) FROM studies AS o "
                                    "WHERE o.study = s.study) ORDER BY study"));
-    return all(query);
+    return all(database, query);
   });
 }
 
@@ -100,7 +105,7 @@ std::optional<StudyRecord> Studies::latest(const std::string& id) {
   return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
     query.bind(1, id);
-    return first(query);
+    return first(database, query);
   });
 }
 
@@ -109,7 +114,7 @@ std::optional<StudyRecord> Studies::find(const std::string& id, int version) {
     SQLite::Statement query(connection, select("WHERE study = ? AND version = ?"));
     query.bind(1, id);
     query.bind(2, version);
-    return first(query);
+    return first(database, query);
   });
 }
 
@@ -117,7 +122,7 @@ std::optional<StudyRecord> Studies::open_version(const std::string& id) {
   return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection, select("WHERE study = ? AND status = 'open'"));
     query.bind(1, id);
-    return first(query);
+    return first(database, query);
   });
 }
 
@@ -126,14 +131,14 @@ std::optional<StudyRecord> Studies::latest_published(const std::string& id) {
     SQLite::Statement query(connection, select("WHERE study = ? AND status IN ('open', 'closed') "
                                                "ORDER BY version DESC LIMIT 1"));
     query.bind(1, id);
-    return first(query);
+    return first(database, query);
   });
 }
 
 std::vector<StudyRecord> Studies::being_published() {
   return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection, select("WHERE status = 'publishing' ORDER BY study"));
-    return all(query);
+    return all(database, query);
   });
 }
 
@@ -222,14 +227,19 @@ void Studies::close(const std::string& id, const std::string& now) {
 std::map<std::string, FrozenPicture> Studies::pictures(const std::string& id, int version) {
   return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection,
-                            "SELECT request, render, digest FROM pictures "
+                            "SELECT request, render, digest, intact, row FROM checked_pictures "
                             "WHERE study = ? AND version = ?");
     query.bind(1, id);
     query.bind(2, version);
     std::map<std::string, FrozenPicture> found;
-    while (query.executeStep())
+    while (query.executeStep()) {
+      if (query.getColumn(3).getInt() == 0) {
+        database.report({"pictures", query.getColumn(4).getInt64(), "", unfit});
+        continue;
+      }
       found[query.getColumn(0).getString()] = {query.getColumn(1).getString(),
                                                query.getColumn(2).getString()};
+    }
     return found;
   });
 }

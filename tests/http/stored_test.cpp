@@ -145,7 +145,7 @@ TEST_F(AStudyWithoutRoom, IsNotReadyWhenNothingCanBeStored) {
 
 TEST_F(AStudyWithoutRoom, CountsWhatStorageDoes) {
   const auto text = httplib::Client("127.0.0.1", server->ops_port()).Get("/metrics")->body;
-  for (const std::string name : {"failures", "wal_bytes", "damaged_pictures"})
+  for (const std::string name : {"failures", "wal_bytes", "damaged_rows", "damaged_pictures"})
     EXPECT_NE(text.find("penumbra_storage_" + name + " "), std::string::npos) << name;
 }
 

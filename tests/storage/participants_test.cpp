@@ -5,12 +5,15 @@
 #include <chrono>
 #include <filesystem>
 #include <future>
+#include <map>
+#include <random>
 #include <set>
 #include <thread>
 
 #include "renderer/error.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/studies.h"
+#include "study/enrolment.h"
 #include "tests/storage/folder.h"
 
 namespace penumbra::server::storage {
@@ -217,6 +220,57 @@ TEST_F(Participation, WithdrawalUnderAReaderIsQuickAndLeavesNoTraceOnceTheReader
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_FALSE(left());
   EXPECT_EQ(participants.answers(other.key).size(), 1u);
+}
+
+TEST_F(Participation, GivesTheFirstFreePlaceAsTheStudySays) {
+  // Against study::next_place, which looks at all places, over random comings and goings.
+  std::mt19937 random(3);
+  std::vector<study::PlaceState> places;
+  std::map<std::size_t, ParticipantRecord> holders;
+  for (int i = 0; i < 300; ++i) {
+    const auto name = std::to_string(i);
+    const auto who = enter(name);
+    ASSERT_EQ(who.place, study::next_place(places)) << i;
+    places.resize(std::max(places.size(), who.place + 1));
+    places[who.place] = study::PlaceState::open;
+    holders[who.place] = who;
+    const auto chosen = std::next(holders.begin(), random() % holders.size());
+    if (random() % 3 != 0) continue;
+    if (random() % 2 == 0 && chosen->second.completed_at.empty()) {
+      answer(chosen->second, 0, "x", {});
+      participants.complete(chosen->second, 1, json::object(), "2026-01-02");
+      places[chosen->first] = study::PlaceState::completed;
+      chosen->second.completed_at = "2026-01-02";
+    } else {
+      participants.withdraw(chosen->second.withdrawal_code, "2026-01-02");
+      places[chosen->first] = study::PlaceState::dropped;
+      holders.erase(chosen);
+    }
+  }
+}
+
+TEST_F(Participation, TakesNoLongerForTheThousandthPersonThanForTheFirst) {
+  const auto seconds_for = [&](int from, int to) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = from; i < to; ++i) enter(std::to_string(i));
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const double first = seconds_for(0, 200);
+  seconds_for(200, 1800);
+  const double last = seconds_for(1800, 2000);
+  RecordProperty("first_200_s", std::to_string(first));
+  RecordProperty("last_200_s", std::to_string(last));
+  EXPECT_LT(last, 3.0 * first);
+}
+
+TEST_F(Participation, LetsPeopleFinishAVersionThatTheNextOneReplaced) {
+  const auto who = enter("a");
+  studies.put_draft("s", {{"id", "s"}, {"changed", true}}, 43, "2026-01-06");
+  studies.start_publishing("s", 2, "other", 0);
+  studies.open("s", 2, "2026-01-07");
+  EXPECT_EQ(code_of([&] { answer(who, 0, "x", {}); }), "");
+  participants.complete(who, 1, json::object(), "2026-01-07");
+  EXPECT_EQ(code_of([&] { enter("b"); }), "conflict");  // of version 1, which takes nobody new
 }
 
 TEST_F(Participation, TestsTakeNoPlaceAndAreNotCounted) {
