@@ -10,6 +10,8 @@
 #include "scenes/library.h"
 #include "scenes/picture_io.h"
 #include "server/jobs/durable_file.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/studies.h"
 #include "techniques/registry.h"
 #include "tests/jobs/temporary_folder.h"
 
@@ -251,6 +253,36 @@ TEST_F(ProgramTest, reads_what_spreadsheets_write_and_says_so) {
   const Outcome wrong = run("statistics r.csv --separator tab");
   EXPECT_EQ(wrong.status, 1);
   EXPECT_THAT(wrong.err, HasSubstr("separated by tabs it holds `participant;scene;technique"));
+}
+
+TEST_F(ProgramTest, backs_up_verifies_restores_and_exports) {
+  {
+    namespace storage = penumbra::server::storage;
+    const storage::DataFolder owned(path("store"));
+    storage::Database database(path("store/penumbra.sqlite"));
+    storage::Studies studies(database);
+    const auto document =
+        json::parse(*read_whole(std::string(PENUMBRA_SOURCE_DIR) + "/studies/thesis-2007.json"));
+    studies.put_draft("thesis-2007", document, 7, "2026-01-01");
+    studies.start_publishing("thesis-2007", 1, "hash", 0);
+    studies.open("thesis-2007", 1, "2026-01-01");
+  }
+  EXPECT_EQ(run("verify --data store").status, 0);
+  ASSERT_EQ(run("backup --data store --out backup.zip --json").status, 0);
+  EXPECT_EQ(run("verify --data backup.zip").status, 0);
+  ASSERT_EQ(run("restore backup.zip --data again").status, 0);
+  EXPECT_EQ(run("verify --data again").status, 0);
+  const Outcome exported = run("export thesis-2007 --data again --out export.zip --json");
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  EXPECT_GT(json::parse(exported.out).at("bytes").get<int>(), 1000);
+  EXPECT_EQ(run("export nothing --data again --out other.zip").status, 2);
+
+  std::filesystem::remove(path("again/integrity.key"));
+  const Outcome damaged = run("verify --data again --json");
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_FALSE(json::parse(damaged.out).at("sound").get<bool>());
+  EXPECT_EQ(run("backup --data again --out other.zip").status, 1);
+  EXPECT_EQ(run("verify --data nowhere").status, 2);
 }
 
 TEST_F(ProgramTest, finds_this_machine_able_to_work) {

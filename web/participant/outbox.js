@@ -54,8 +54,9 @@ export class Outbox extends EventTarget {
         pause_ms = first_pause_ms;
       } catch (error) {
         if (!error.passing) {
-          // The server has read it and will not have it: trying again changes nothing.
-          await this.storage.drop(item.sequence);
+          // The server has read it and will not have it: trying again changes nothing. One that does
+          // not know the person may be a server whose data is being restored: the answer is kept.
+          if (error.status !== 404) await this.storage.drop(item.sequence);
           this.tell("refused", error);
           throw error;
         }
