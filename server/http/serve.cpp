@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -176,6 +177,7 @@ void print_addresses(const ServeOptions& options, const Server& server) {
 int serve(const ServeOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("penumbra"));
   install_signals();
+  ::umask(0077);  // what the data folder holds is its owner's, folders within it too
   raise_descriptor_limit();
   RenderServiceOptions render_options;
   render_options.data = options.data;
