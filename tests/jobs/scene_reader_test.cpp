@@ -59,7 +59,9 @@ TEST(SceneReader, refuses_a_scene_that_needs_more_memory_than_it_may_take) {
   const fs::path file = folder.path() / "scene.glb";
   scenes::export_glb(*scenes::load("sweep:50x100000x1"), file);
   ASSERT_GT(fs::file_size(file), 2u << 20);
-  EXPECT_EQ(read_by_child(file, 1u << 20).at("error").at("code"), "unsupported");
+  // The importer may notice first that it cannot hold the file.
+  const std::string code = read_by_child(file, 1u << 20).at("error").at("code");
+  EXPECT_TRUE(code == "unsupported" || code == "unreadable") << code;
 }
 
 TEST(ScenesOfRequests, are_kept_as_long_as_their_bytes_fit) {
