@@ -148,10 +148,12 @@ json analyse_as_in_2007(const SurveyData& data, const ParticipantTable& unordere
                  {"paired_t", tests.paired_t_list()}};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Descriptives values = describe_technique(table, i);
-    result["techniques"].push_back({{"technique", names[i]},
-                                    {"n", values.n},
-                                    {"mean_rank", value_or_null(values.mean)},
-                                    {"weighted_mean_rank", value_or_null(values.weighted_mean)}});
+    result["techniques"].push_back(
+        with_reason({{"technique", names[i]},
+                     {"n", values.n},
+                     {"mean_rank", value_or_null(values.mean)},
+                     {"weighted_mean_rank", value_or_null(values.weighted_mean)}},
+                    values.reason));
   }
   add_subsets(names, tests.different(alpha), result);
   return result;

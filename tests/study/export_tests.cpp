@@ -129,9 +129,11 @@ TEST(Codebook, ExplainsEveryColumnOfEveryTable) {
       {"responses_wide.csv", WideTable(study).header()},
       {"pairs.csv", PairsTable::header()},
       {"participants.csv", ParticipantsTable(study).header()}};
-  for (const auto& [file, header] : headers)
-    for (const auto& name : cells_of(header).front())
+  for (const auto& [file, header] : headers) {
+    const auto rows = cells_of(header);
+    for (const auto& name : rows.front())
       EXPECT_TRUE(explained.contains({file, name})) << file << " " << name;
+  }
   for (const char* file : {"report.html", "results.json", "results.tex", "study.json",
                            "responses.json", "recompute.R", "recompute.py", "figures/*.svg"})
     EXPECT_TRUE(explained.contains({file, ""})) << file;
