@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "renderer/error.h"
+#include "scenes/json_text.h"
 #include "server/http/secrets.h"
+#include "server/jobs/request_scene.h"
 #include "server/storage/data_folder.h"
 
 namespace penumbra::server::http {
@@ -105,16 +107,34 @@ std::string bytes_of(zip_t* archive, zip_uint64_t index, zip_uint64_t size) {
 
 /// The one file in a folder that a scene is read from.
 fs::path main_file(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const auto ending = entry.path().extension();
-    if (ending == ".gltf" || ending == ".glb") found.push_back(entry.path());
-  }
+  const std::vector<fs::path> found = scenes::scene_files(folder);
   if (found.size() != 1)
     throw unreadable(
-        "the archive must hold one .gltf or .glb file, not " + std::to_string(found.size()),
+        "the archive must hold one .gltf, .glb or .obj file, or one scene document, "
+        "not " +
+            std::to_string(found.size()),
         "body");
   return found.front();
+}
+
+/// Text with vertices in it.
+bool looks_like_obj(const std::string& bytes) {
+  return bytes.find('\0') == std::string::npos &&
+         (bytes.starts_with("v ") || bytes.find("\nv ") != std::string::npos ||
+          bytes.find("\rv ") != std::string::npos);
+}
+
+/// Name of the file that a body goes into, told by its bytes.
+const char* file_name_of(const std::string& bytes) {
+  if (bytes.starts_with("glTF")) return "scene.glb";
+  const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first != std::string::npos && bytes[first] == '{') {
+    const bool gltf = bytes.find("\"penumbra_scene\"") == std::string::npos &&
+                      bytes.find("\"asset\"") != std::string::npos;
+    return gltf ? "scene.gltf" : "scene.json";
+  }
+  if (looks_like_obj(bytes)) return "scene.obj";
+  throw unreadable("neither glTF, nor OBJ, nor a zip, nor a scene document", "body");
 }
 
 fs::path write_upload(const fs::path& folder, const std::string& bytes) {
@@ -122,15 +142,9 @@ fs::path write_upload(const fs::path& folder, const std::string& bytes) {
     unpack(bytes, folder);
     return main_file(folder);
   }
-  const auto first = bytes.find_first_not_of(" \t\r\n");
-  if (bytes.starts_with("glTF")) {
-    storage::write_file_durably(folder / "scene.glb", bytes);
-    return folder / "scene.glb";
-  }
-  if (first == std::string::npos || bytes[first] != '{')
-    throw unreadable("neither a glTF binary, nor a zip, nor a scene document", "body");
-  storage::write_file_durably(folder / "scene.json", bytes);
-  return folder / "scene.json";
+  const fs::path file = folder / file_name_of(bytes);
+  storage::write_file_durably(file, bytes);
+  return file;
 }
 
 /// Reads it for good; messages name the file as the sender knows it.
@@ -227,6 +241,7 @@ nlohmann::json store_scene(const fs::path& data, const std::string& id, const st
   const auto fresh = staging.path / "scene";
   fs::create_directories(fresh);
   nlohmann::json about = read_upload(read, write_upload(fresh, bytes), fresh);
+  storage::write_file_durably(fresh / about_scene_file, scenes::json_text(about));
   fs::create_directories(data / "scenes");
   const std::lock_guard lock(replacing());
   const auto old = places_of(data, id);

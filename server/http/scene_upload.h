@@ -13,10 +13,10 @@ void check_scene_id(const std::string& id);
 /// Reads a scene's file and says what it is: {"title","notes"}. Throws what is wrong with it.
 using ReadScene = std::function<nlohmann::json(const std::filesystem::path&)>;
 
-/// Checks and stores an uploaded scene as data/scenes/ID/: a glTF binary, a zip with one glTF file
-/// and what it names, or a scene document; which one is told by its first bytes. The old scene of
-/// that id stays where the new one cannot be read. Returns what `read` said and whether there was
-/// an old one, `replaced`. Throws unreadable, bad_value.
+/// Checks and stores an uploaded scene as data/scenes/ID/: glTF, OBJ, a scene document, or a zip
+/// with one of them and what it names; which one is told by its first bytes. The old scene of that
+/// id stays where the new one cannot be read. Returns what `read` said and whether there was an old
+/// one, `replaced`. Throws unreadable, bad_value.
 nlohmann::json store_scene(const std::filesystem::path& data, const std::string& id,
                            const std::string& bytes, const ReadScene& read);
 

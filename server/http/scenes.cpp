@@ -22,6 +22,13 @@ void list_scenes(Call& call) {
   send_json(call.response, 200, scene_catalogue(call.service.folder.path()));
 }
 
+void get_scene(Call& call) {
+  const auto list = scene_catalogue(call.service.folder.path());
+  for (const auto& scene : list.at("scenes"))
+    if (scene.at("id") == call.path.at("id")) return send_json(call.response, 200, scene);
+  throw nothing_here();
+}
+
 void put_scene(Call& call) {
   const auto& id = call.path.at("id");
   check_scene_id(id);
@@ -52,6 +59,7 @@ void delete_scene(Call& call) {
 
 void add_scene_routes(std::vector<Route>& table) {
   table.push_back({"GET", "/api/v1/scenes", Access::laboratory, list_scenes});
+  table.push_back({"GET", "/api/v1/scenes/{id}", Access::laboratory, get_scene});
   table.push_back({"PUT", "/api/v1/scenes/{id}", Access::researcher, put_scene, largest_scene});
   table.push_back({"DELETE", "/api/v1/scenes/{id}", Access::researcher, delete_scene});
 }

@@ -16,8 +16,14 @@ json scene_catalogue(const std::filesystem::path& data) {
                     {"title", info.title},
                     {"description", info.description},
                     {"built_in", true}});
-  for (const std::string& id : imported_scenes(data))
-    list.push_back({{"id", id}, {"title", id}, {"description", "imported"}, {"built_in", false}});
+  for (const std::string& id : imported_scenes(data)) {
+    const json about = about_imported_scene(data, id);
+    list.push_back({{"id", id},
+                    {"title", about.at("title")},
+                    {"description", "imported"},
+                    {"built_in", false},
+                    {"notes", about.at("notes")}});
+  }
   return {{"scenes", list}};
 }
 

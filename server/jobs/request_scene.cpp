@@ -10,6 +10,7 @@
 
 #include "renderer/error.h"
 #include "scenes/library.h"
+#include "server/jobs/durable_file.h"
 
 namespace penumbra::server {
 namespace fs = std::filesystem;
@@ -129,6 +130,20 @@ std::vector<std::string> imported_scenes(const fs::path& data) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
+}
+
+nlohmann::json about_imported_scene(const fs::path& data, const std::string& id) {
+  nlohmann::json about = {{"title", id}, {"notes", nlohmann::json::array()}};
+  const auto text = read_whole(data / "scenes" / id / about_scene_file);
+  if (!text) return about;
+  const nlohmann::json kept = nlohmann::json::parse(*text, nullptr, false);
+  if (!kept.is_object()) return about;
+  if (const auto title = kept.find("title");
+      title != kept.end() && title->is_string() && !title->get_ref<const std::string&>().empty())
+    about["title"] = *title;
+  if (const auto notes = kept.find("notes"); notes != kept.end() && notes->is_array())
+    about["notes"] = *notes;
+  return about;
 }
 
 HashedScene load_request_scene(const std::string& name, const RequestContext& context) {

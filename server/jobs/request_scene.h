@@ -19,6 +19,14 @@ struct HashedScene {
 /// id.
 HashedScene load_request_scene(const std::string& name, const RequestContext& context);
 
+/// What is known of an imported scene without reading it, beside it in its folder: {"title",
+/// "notes"}.
+inline constexpr const char* about_scene_file = "scene.about";
+
+/// The title and notes that its upload left; the id and no notes for a scene that was put there by
+/// hand.
+nlohmann::json about_imported_scene(const std::filesystem::path& data, const std::string& id);
+
 /// Ids of the imported scenes in a data folder, sorted.
 std::vector<std::string> imported_scenes(const std::filesystem::path& data);
 

@@ -1,7 +1,9 @@
 // Runs the built program as a person or a script would.
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -111,6 +113,89 @@ TEST_F(ProgramTest, prints_one_json_document_also_when_it_fails) {
   const Outcome outcome = run("render boxes none --width 0 --json");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(json::parse(outcome.out).at("error").at("field"), "width");
+}
+
+TEST_F(ProgramTest, survives_arguments_of_any_bytes) {
+  std::ofstream(path("g\xe9o.obj")) << "mtllib \xe9.mtl\no \xe9\xff\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                       "usemtl \xfc\nf 1 2 3\n";
+  const std::vector<std::pair<std::string, int>> cases{
+      {"render g\xe9o.obj none --width 16 --height 16 --json", 0},
+      {"import g\xe9o.obj --id geo --json", 0},
+      {"plan g\xe9o.obj shadow-map --json", 0},
+      {"import g\xe9o.obj --id \xe9 --json", 2},
+      {"render \xe9 none --json", 2},
+      {"render boxes \xe9 --json", 2},
+      {"render boxes none --camera \xe9 --json", 2},
+      {"render boxes shadow-map --set map_size=\xe9 --json", 2},
+      {"render boxes shadow-map --set \xe9=\xe9 --json", 2},
+      {"render boxes none --light \xe9.\xe9=\xe9 --json", 2},
+      {"render boxes none --width \xe9 --json", 2},
+      {"compare \xe9 \xe9 --json", 2},
+      {"statistics g\xe9o.obj --json", 1},
+      {"\xe9 --json", 2}};
+  for (const auto& [arguments, status] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_TRUE(outcome.status == status || (status > 0 && outcome.status == 3 - status))
+        << arguments << ": " << outcome.status << outcome.err;
+    const json document = json::parse(outcome.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << arguments << ": " << outcome.out;
+    if (document.contains("error") && document["error"].is_object()) {
+      EXPECT_NE(document["error"]["code"], "internal") << arguments << outcome.out;
+    }
+  }
+}
+
+TEST_F(ProgramTest, tells_what_an_import_left_out_in_renders_and_lists) {
+  std::ofstream(path("m.obj")) << "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\n";
+  const auto notes_of = [&](const std::string& arguments) {
+    const Outcome outcome = run(arguments + " --json");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    json document = json::parse(outcome.out);
+    if (!document.contains("scenes")) return document.at("notes").dump();
+    return document.at("scenes").back().at("notes").dump();
+  };
+  const std::string size = " --width 16 --height 16 --light-samples 16";
+  for (const std::string& arguments :
+       {std::string("import m.obj --id kept"), "render m.obj none" + size,
+        "render kept none --data data" + size, "measure kept none --frames 1 --data data" + size,
+        std::string("scenes --data data")})
+    EXPECT_THAT(notes_of(arguments), testing::AllOf(HasSubstr("gone.mtl"), HasSubstr("is a line")))
+        << arguments;
+}
+
+TEST_F(ProgramTest, compares_all_bits_light_and_says_what_becomes_of_alpha) {
+  using penumbra::Image8;
+  Image8 a(32, 32, 4, 100);
+  for (std::size_t i = 3; i < a.pixels.size(); i += 4) a.pixels[i] = 255;
+  penumbra::scenes::write_picture(path("a.png"), a);
+  a.at(3, 3, 3) = 0;
+  penumbra::scenes::write_picture(path("open.png"), a);
+  const auto compared = [&](const std::string& files) {
+    const Outcome outcome = run("compare " + files + " --json");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  const json alpha = compared("a.png open.png");
+  EXPECT_EQ(alpha.at("rms_y"), 0.0);
+  EXPECT_THAT(alpha.at("notes").dump(), HasSubstr("open.png has 1 pixels that are not opaque"));
+  EXPECT_THAT(compared("a.png a.png").at("notes").dump(), testing::Not(HasSubstr("opaque")));
+  // 16 bits: a difference of 64 of 65535 everywhere is 64 / 257 levels.
+  for (const auto& [name, level] : {std::pair("low.png", 25700), std::pair("high.png", 25764)}) {
+    const auto output = OIIO::ImageOutput::create(path(name));
+    ASSERT_TRUE(output && output->open(path(name), {16, 16, 3, OIIO::TypeDesc::UINT16}));
+    const std::vector<std::uint16_t> pixels(16 * 16 * 3, static_cast<std::uint16_t>(level));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT16, pixels.data()));
+  }
+  const json fine = compared("low.png high.png");
+  EXPECT_NEAR(fine.at("rms_y").get<double>(), 64.0 / 257.0, 1e-4);
+  EXPECT_NEAR(fine.at("psnr").get<double>(), 20.0 * std::log10(255.0 * 257.0 / 64.0), 1e-3);
+  // Linear light of a picture is the picture, but for its rounding to 8 bits.
+  for (const char* name : {"p.png", "p.exr"})
+    ASSERT_EQ(
+        run(std::string("render half-plane none --width 32 --height 32 --out ") + name).status, 0);
+  const json light = compared("p.exr p.png");
+  EXPECT_LT(light.at("rms_y").get<double>(), 0.5);
+  EXPECT_THAT(light.at("notes").dump(), HasSubstr("p.exr is in linear light"));
 }
 
 TEST_F(ProgramTest, draws_a_picture_of_the_size_asked_for) {

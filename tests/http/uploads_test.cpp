@@ -147,6 +147,36 @@ TEST_F(UploadedScenes, ThatWereImportedAsAFileAreReplacedToo) {
             scenes::content_hash(*scenes::load("sweep:3x50x1")));
 }
 
+TEST_F(UploadedScenes, ComeInAsTheCommandLineTakesThem) {
+  const std::string obj =
+      "# a box's lid\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nl 1 2\nf 1 2 3 4\n";
+  const std::string gltf = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],
+      "nodes":[{"mesh":0,"skin":0}],"skins":[{"joints":[0]}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+      "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,
+      "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  const std::vector<std::pair<std::string, std::string>> bodies{
+      {obj, "gone.mtl"},
+      {gltf, "skin"},
+      {zip_of(Files{{"deep/m.obj", obj}, {"deep/gone.mtl", "newmtl a\nKd 1 0 0\n"}}), "is a line"},
+      {zip_of(Files{{"m.gltf", gltf}, {"readme.txt", "hello"}}), "skin"}};
+  int status = 201;
+  for (const auto& [bytes, note] : bodies) {
+    const auto put = body_of(
+        researcher->Put("/api/v1/scenes/mine", bytes, "application/octet-stream"), status, "Scene");
+    status = 200;
+    const auto got = body_of(client->Get("/api/v1/scenes/mine"), 200, "Scene");
+    const auto list = body_of(client->Get("/api/v1/scenes"), 200, "SceneList");
+    for (const auto& scene : {put, got, list["scenes"].back()}) {
+      EXPECT_EQ(scene["id"], "mine");
+      EXPECT_NE(scene["notes"].dump().find(note), std::string::npos) << scene.dump();
+    }
+    EXPECT_NO_THROW(scenes::load("mine", folder.path / "data"));
+  }
+  EXPECT_EQ(error_of(client->Get("/api/v1/scenes/nothing"), 404), "not_found");
+}
+
 TEST_F(UploadedScenes, AreKeptWhereTheNewOneCannotBeRead) {
   const auto glb = scenes::encode_glb(*scenes::load("sweep:2x50x1"));
   body_of(researcher->Put("/api/v1/scenes/mine", glb, "model/gltf-binary"), 201, "Scene");
