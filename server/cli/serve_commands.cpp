@@ -34,6 +34,8 @@ void add_serve(CLI::App& app, Session& session) {
   serve->add_option("--queue-limit", options->queue_limit, "Renders that may wait")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  serve->add_option("--cache-bytes", options->cache_bytes, "Disk for pictures; the oldest go first")
+      ->check(CLI::Range(std::uint64_t{1} << 20, std::uint64_t{1} << 50));
   serve->add_option("--render-deadline", options->render_deadline_s, "Seconds per render")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();

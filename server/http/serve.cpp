@@ -184,6 +184,7 @@ int serve(const ServeOptions& options) {
   render_options.device = options.device;
   render_options.workers = options.workers;
   render_options.queue_limit = options.queue_limit;
+  if (options.cache_bytes) render_options.cache_bytes = *options.cache_bytes;
   render_options.deadline_s = options.render_deadline_s;
   render_options.validation = options.validation;
   Server server(options, [&] { return make_render_service(render_options); });

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct ServeOptions {
   std::filesystem::path web;   ///< serve the pages from this folder instead of the built-in ones
   std::string public_url;      ///< how browsers reach the server, e.g. https://study.example.org
   unsigned queue_limit = 256;  ///< renders that may wait
+  std::optional<std::uint64_t> cache_bytes;  ///< as RenderServiceOptions::cache_bytes
   double render_deadline_s = 300.0;
   double import_deadline_s = 60.0;          ///< per uploaded scene
   std::vector<std::string> worker_command;  ///< of the process that reads them; empty: this program

@@ -1,5 +1,8 @@
 // Many at once, and a server that runs out of something.
 #include <signal.h>
+#include <sys/stat.h>
+
+#include <set>
 
 #include "tests/faults/answering.h"
 #include "tests/faults/ledger.h"
@@ -137,6 +140,101 @@ TEST(Traffic, LongMixedTrafficGrowsNothing) {
   ++fault.tries;
   EXPECT_EQ(run_traffic(5.0), 0);
   fault.did << "memory, descriptors and the database's log did not grow";
+}
+
+std::string status_of(const ServerProcess& server, const std::string& at) {
+  const auto result = server.client().Get(at);
+  return result && result->status == 200 ? json::parse(result->body).value("status", "") : "";
+}
+
+TEST_F(Load, ARenderStopsWhenItsOnlyClientIsGoneAndNotForABystander) {
+  Fault fault(21, "clients that hang up or cancel");
+  ServerProcess server(options());
+  const auto body = slow_render(1000).dump();
+  // Its owner waits elsewhere; a bystander looks on and hangs up, and a stranger cancels.
+  const auto posted = server.client().Post("/api/v1/renders", body, "application/json");
+  ASSERT_TRUE(posted);
+  const std::string at = "/api/v1/renders/" + json::parse(posted->body)["id"].get<std::string>();
+  ++fault.tries;
+  auto bystander = server.client();
+  bystander.set_read_timeout(1);
+  EXPECT_FALSE(bystander.Get(at + "?wait_s=30"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  const auto status = status_of(server, at);
+  EXPECT_TRUE(status == "queued" || status == "running") << status;
+  // One who asked for a picture and hung up: the worker is free again.
+  ++fault.tries;
+  auto impatient = server.client();
+  impatient.set_read_timeout(1);
+  EXPECT_FALSE(
+      impatient.Get("/api/v1/image?scene=boxes&technique=reference&width=1001&height=1000&"
+                    "supersampling=16&light_samples=1024"));
+  server.researcher().Delete(at);
+  const auto quick = server.client().Get("/api/v1/image?scene=half-plane&technique=none&width=16");
+  ASSERT_TRUE(quick);
+  EXPECT_EQ(quick->status, 200) << quick->body;
+  fault.did << "kept for its owner, stopped where nobody waited";
+}
+
+TEST_F(Load, TwoHundredIdenticalRequestsAreOneRender) {
+  Fault fault(22, "200 identical requests at once");
+  ServerProcess server(options());
+  ASSERT_GT(server.worker(), 0);
+  std::mutex mutex;
+  std::set<std::string> bodies;
+  std::vector<std::thread> people;
+  for (int i = 0; i < 200; ++i)
+    people.emplace_back([&] {
+      const auto image = server.client().Get(
+          "/api/v1/image?scene=boxes&technique=pcf&width=100&height=100&supersampling=4");
+      const std::lock_guard lock(mutex);
+      ++fault.tries;
+      bodies.insert(image && image->status == 200 ? image->body : "failed");
+      if (!image) {
+        ADD_FAILURE() << httplib::to_string(image.error());
+      } else if (image->status != 200) {
+        ADD_FAILURE() << image->status << image->body;
+      }
+    });
+  for (auto& person : people) person.join();
+  EXPECT_EQ(bodies.size(), 1u);
+  EXPECT_FALSE(bodies.contains("failed"));
+  EXPECT_EQ(server.metric("penumbra_renders_rendered"), 1);
+  fault.did << "one render for all, equal bytes";
+}
+
+/// Bytes on disk below a folder, whole blocks counted.
+std::size_t disk_use(const std::filesystem::path& folder) {
+  std::size_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    struct stat state {};
+    if (::lstat(entry.path().c_str(), &state) == 0)
+      bytes += static_cast<std::size_t>(state.st_blocks) * 512;
+  }
+  return bytes;
+}
+
+TEST_F(Load, TheCacheKeepsItsBound) {
+  Fault fault(24, "120 pictures, a cache of 2 MiB");
+  constexpr std::size_t bound = 2 << 20;
+  ServerProcess server(options({"--cache-bytes", std::to_string(bound)}));
+  const auto at = [](int width) {
+    return "/api/v1/image?scene=half-plane&technique=none&height=16&width=" + std::to_string(width);
+  };
+  std::string first;
+  for (; fault.tries < 120; ++fault.tries) {
+    const auto image = server.client().Get(at(16 + fault.tries));
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->status, 200) << image->body;
+    if (first.empty()) first = image->body;
+  }
+  const auto used = disk_use(data / "artefacts");
+  EXPECT_LT(used, bound + bound / 4);
+  // The oldest is gone and drawn again, bytes equal.
+  const auto again = server.client().Get(at(16));
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->body, first);
+  fault.did << used / 1024 << " KiB on disk in the end";
 }
 
 }  // namespace

@@ -346,5 +346,43 @@ TEST_F(Requests, SlowClientsKeepOthersFromNothing) {
             << static_cast<int>(health_s * 1000) << " ms";
 }
 
+TEST_F(Requests, SlowReadersShareOneCopyAndAreCutOff) {
+  Fault fault(20, "40 clients that do not read a large picture");
+  const json request = {
+      {"scene", "half-plane"}, {"technique", "none"}, {"width", 1024}, {"height", 1024}};
+  const auto posted = server->client().Post("/api/v1/renders", request.dump(), "application/json");
+  ASSERT_TRUE(posted);
+  const std::string at = "/api/v1/renders/" + json::parse(posted->body)["id"].get<std::string>();
+  ASSERT_EQ(json::parse(server->client().Get(at + "?wait_s=60")->body)["status"], "done");
+  const auto whole = server->client().Get(at + "/image.exr");
+  ASSERT_TRUE(whole);
+  ASSERT_EQ(whole->status, 200);
+  const auto size = whole->body.size();
+  server->forget_peak();
+  const auto before = server->resident();
+  std::vector<int> readers;
+  for (int i = 0; i < 40; ++i) {
+    const int descriptor = ::socket(AF_INET, SOCK_STREAM, 0);
+    const int small = 4096;
+    ::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(server->port()));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ASSERT_EQ(::connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    const auto bytes = head("GET", "", at + "/image.exr");
+    ::send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    readers.push_back(descriptor);
+    ++fault.tries;
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  EXPECT_LT(longest_call(*server), 2.0);
+  EXPECT_LT(server->peak(), before + 20 * size);
+  fault.did << "a file of " << size / 1024 << " KiB took "
+            << (server->peak() - std::min(before, server->peak())) / 1024
+            << " KiB for all of them; others were served";
+  for (const int descriptor : readers) ::close(descriptor);
+}
+
 }  // namespace
 }  // namespace penumbra::faults

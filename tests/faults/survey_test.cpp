@@ -1,4 +1,5 @@
 // People who take part, and people who should not.
+#include <sqlite3.h>
 #include <zip.h>
 
 #include <set>
@@ -331,6 +332,41 @@ TEST_F(Survey, AChangedStudyIsANewVersionAndAClosedOneTakesNothing) {
   auto client = server->client();
   EXPECT_TRUE(enter(client).token.empty());
   fault.did << "another version and hash in every row; closed: 409";
+}
+
+TEST_F(Survey, WithdrawalUnderAReaderHoldsNobodyUp) {
+  Fault fault(0, "withdrawal while another process reads the database");
+  const auto leaving = enter_many(*server, 3);
+  const auto staying = enter_many(*server, 3);
+  sqlite3* reader = nullptr;
+  ASSERT_EQ(sqlite3_open((server->data() / "penumbra.sqlite").c_str(), &reader), SQLITE_OK);
+  sqlite3_exec(reader, "BEGIN; SELECT COUNT(*) FROM answers", nullptr, nullptr, nullptr);
+  double longest = 0;
+  for (std::size_t i = 0; i < leaving.size(); ++i) {
+    ++fault.tries;
+    EXPECT_EQ(server->client().Delete("/api/v1/withdrawals/" + leaving[i].withdrawal_code)->status,
+              204);
+    const Stopwatch watch;
+    EXPECT_EQ(put(staying[i], 0, staying[i].answer(0, random_uuid()))->status, 200);
+    longest = std::max(longest, watch.seconds());
+  }
+  sqlite3_exec(reader, "COMMIT", nullptr, nullptr, nullptr);
+  sqlite3_close(reader);
+  EXPECT_LT(longest, 2.0);
+  // Once the reader is gone the log is emptied, by and by.
+  const auto gone = [&] {
+    for (const char* name : {"penumbra.sqlite", "penumbra.sqlite-wal"}) {
+      std::ifstream file(server->data() / name, std::ios::binary);
+      std::ostringstream bytes;
+      bytes << file.rdbuf();
+      for (const auto& person : leaving)
+        if (bytes.str().find(person.token) != std::string::npos) return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(eventually(gone, 20));
+  fault.did << "answers meanwhile took at most " << static_cast<int>(longest * 1000)
+            << " ms; nothing left afterwards";
 }
 
 }  // namespace

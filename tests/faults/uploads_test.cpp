@@ -146,6 +146,9 @@ TEST_F(Uploads, ArchivesStayInTheirFolder) {
   ++fault.tries;
   refused(zip_of({{"a.gltf", gltf}, {"b.gltf", gltf}}), "two scenes");
   ++fault.tries;
+  refused(zip_of({{"scene.glb/x", "y"}, {"scene.glb", "x"}}, true),
+          "a file and a folder of one name");
+  ++fault.tries;
   auto lying = zip_of({{"scene.gltf", std::string(5000, ' ') + gltf}}, true);
   for (std::size_t at = 0; (at = lying.find("PK\x01\x02", at)) != std::string::npos; at += 4)
     lying[at + 24] = 10;  // the uncompressed size in the central directory

@@ -209,5 +209,59 @@ TEST_F(Workers, PixelsThatAreNoNumberAreCounted) {
             << "pixels";
 }
 
+TEST_F(Workers, AWorkerThatStopsReadingBlocksNothing) {
+  Fault fault(28, "the worker stops before it reads a task of megabytes");
+  ServerProcess server(options({"--render-deadline", "12"}));
+  // The reference is cached, so that the next task carries it.
+  json measured = {{"scene", "half-plane"}, {"technique", "none"}, {"width", 700},
+                   {"height", 700},         {"measure", true},     {"frames", 1},
+                   {"light_samples", 4}};
+  const auto first = post(server, measured);
+  ASSERT_EQ(ended(server, first).value("status", ""), "done");
+  ::kill(server.worker(), SIGSTOP);
+  ++fault.tries;
+  measured["technique"] = "shadow-map";
+  const Stopwatch watch;
+  const auto second = post(server, measured);
+  const auto last = ended(server, second);
+  EXPECT_TRUE(last.value("status", "") == "done" || last.value("status", "") == "failed") << last;
+  EXPECT_LT(watch.seconds(), 30.0);
+  EXPECT_TRUE(draws(server, 23));
+  ::kill(server.worker(), SIGSTOP);
+  ++fault.tries;
+  measured["technique"] = "pcf";
+  post(server, measured);
+  const Stopwatch end;
+  EXPECT_EQ(server.terminate(60), 0);
+  fault.did << "over after " << static_cast<int>(watch.seconds() * 1000)
+            << " ms at a deadline of 12 s, a stop took " << static_cast<int>(end.seconds() * 1000)
+            << " ms";
+}
+
+TEST_F(Workers, PicturesTooLargeForTheDeviceStopNothing) {
+  Fault fault(30, "six cheap requests for maps of 16,384 texels");
+  ServerProcess server(options());
+  ASSERT_TRUE(draws(server, 16));
+  const double deaths = server.metric("penumbra_renders_worker_deaths");
+  std::vector<std::string> ids;
+  for (const char* technique : {"evsm", "esm", "vsm", "msm", "savsm", "evsm"}) {
+    const json request = {{"scene", "half-plane"},
+                          {"technique", technique},
+                          {"width", 24 + fault.tries},
+                          {"height", 24},
+                          {"parameters", {{"map_size", 16384}}}};
+    const auto result = server.client().Post("/api/v1/renders", request.dump(), "application/json");
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->status == 422 || result->status < 300) << result->status << result->body;
+    ++fault.tries;
+  }
+  const Stopwatch watch;
+  EXPECT_TRUE(draws(server, 18));
+  EXPECT_LT(watch.seconds(), 60.0);
+  EXPECT_EQ(server.metric("penumbra_renders_worker_deaths"), deaths);
+  fault.did << "no worker died, a good request after them took "
+            << static_cast<int>(watch.seconds() * 1000) << " ms";
+}
+
 }  // namespace
 }  // namespace penumbra::faults
