@@ -195,7 +195,8 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
   const std::shared_ptr<const Scene> scene = scenes::load(name);
   vulkan::Device device({"", false});
   const GpuScene gpu(device, scene, std::vector<InstanceUse>(scene->instances.size()),
-                     std::vector<bool>(scene->textures.size(), true));
+                     std::vector<bool>(scene->textures.size(), true),
+                     scene_frame(*scene, scene->cameras.front()));
   const EmbreeProgram embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
   const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());

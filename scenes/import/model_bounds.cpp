@@ -91,7 +91,8 @@ bool has_floor(const Scene& scene, const Bounds& bounds) {
     if (point.y > top && glm::all(glm::lessThanEqual(point, bounds.high))) rest.add(point);
   });
   if (rest.empty()) return false;
-  return floor_area(scene, bounds, top) >= 0.5 * rest.size().x * rest.size().z;
+  const double area = floor_area(scene, bounds, top);
+  return area > 0.0 && area >= 0.5 * rest.size().x * rest.size().z;
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ int verify(const Session& session, const fs::path& data) {
 /// goes on meanwhile.
 int export_study(const Session& session, const std::string& study, const fs::path& data,
                  const fs::path& out) {
+  http::log_to_standard_error();
   const PassingFolder passing;
   for (const auto& line : storage::copy_folder(data, passing.path / "data"))
     std::cerr << "damaged: " << line << '\n';

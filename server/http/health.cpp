@@ -25,11 +25,6 @@ std::string Health::trouble() {
 }
 
 std::string Health::look() {
-  if (auto found = storage_trouble(); !found.empty()) return found;
-  return renders.trouble();
-}
-
-std::string Health::storage_trouble() {
   try {
     if (!database.healthy()) return "the database is damaged: " + database.damage_text();
     database.probe();

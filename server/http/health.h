@@ -5,19 +5,18 @@
 #include <string>
 
 #include "server/http/frozen_pictures.h"
-#include "server/jobs/render_service.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/database.h"
 
 namespace penumbra::server::http {
 
-/// Whether the server can do what it is asked: it writes to the database and to the disk, reads the
-/// pictures of open studies and looks at the workers. Thread-safe.
+/// Whether the server can keep what it is sent: it writes to the database and to the disk, and reads
+/// the pictures of open studies. Thread-safe.
 class Health {
  public:
   Health(const storage::DataFolder& folder_, storage::Database& database_,
-         FrozenPictures& pictures_, RenderService& renders_)
-      : folder(folder_), database(database_), pictures(pictures_), renders(renders_) {}
+         FrozenPictures& pictures_)
+      : folder(folder_), database(database_), pictures(pictures_) {}
 
   /// Empty, or the first thing that is wrong, in words that name no path. Tries things at most
   /// every two seconds and returns the last finding in between.
@@ -25,12 +24,10 @@ class Health {
 
  private:
   std::string look();
-  std::string storage_trouble();
 
   const storage::DataFolder& folder;
   storage::Database& database;
   FrozenPictures& pictures;
-  RenderService& renders;
   std::mutex mutex;
   std::chrono::steady_clock::time_point next{};
   std::string last;

@@ -12,6 +12,7 @@
 
 #include "renderer/error.h"
 #include "scenes/json_text.h"
+#include "scenes/library.h"
 #include "server/http/secrets.h"
 #include "server/jobs/request_scene.h"
 #include "server/storage/data_folder.h"

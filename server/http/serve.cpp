@@ -174,8 +174,12 @@ void print_addresses(const ServeOptions& options, const Server& server) {
 
 }  // namespace
 
-int serve(const ServeOptions& options) {
+void log_to_standard_error() {
   spdlog::set_default_logger(spdlog::stderr_color_mt("penumbra"));
+}
+
+int serve(const ServeOptions& options) {
+  log_to_standard_error();
   install_signals();
   ::umask(0077);  // what the data folder holds is its owner's, folders within it too
   raise_descriptor_limit();

@@ -63,6 +63,9 @@ class Server {
   std::unique_ptr<State> state;
 };
 
+/// Logs go to standard error, so that standard output holds the one document that was asked for.
+void log_to_standard_error();
+
 /// `penumbra serve`: prints the participant's and the researcher's URLs and answers until SIGTERM
 /// or SIGINT. Returns the process's exit status.
 int serve(const ServeOptions& options);

@@ -24,12 +24,13 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
       pictures(studies, *renders, folder.path() / "pictures"),
       publisher(studies, *renders, pictures),
       sweeps(database, *renders),
-      health(folder, database, pictures, *renders) {
+      health(folder, database, pictures) {
   sweep_uploads(folder.path());
 }
 
 std::string Service::not_ready() {
   if (draining) return "draining";
+  if (const std::string trouble = renders->trouble(); !trouble.empty()) return trouble;
   return health.trouble();
 }
 

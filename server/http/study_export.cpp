@@ -12,6 +12,7 @@
 #include "study/report/latex.h"
 #include "study/report/scripts.h"
 #include "study/statistics/report.h"
+#include "study/statistics/survey_data.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -188,6 +189,7 @@ StudyExport::StudyExport(storage::Participants& participants_,
 
 void StudyExport::analyse() {
   if (!report.is_null()) return;
+  study::statistics::Gatherer gatherer;
   participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
     if (person.participant.test) return;
     ++attendance.entered;
@@ -195,9 +197,10 @@ void StudyExport::analyse() {
     if (person.excluded())
       attendance.excluded.push_back(
           {person.participant.pseudonym, person.exclusions.back().reason});
+    for (const auto& page : pages_of(*frozen, person))
+      for (const auto& row : page) gatherer.add(row);
   });
-  report = study::statistics_report(rows_of(participants, *frozen),
-                                    study::report_options(frozen->study));
+  report = study::survey_report(gatherer.finish(), study::report_options(frozen->study));
   flags = flag_names(report.at("flags"));
 }
 

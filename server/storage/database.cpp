@@ -160,7 +160,7 @@ void Database::translate(const SQLite::Exception& error) {
       damaged = true;
       throw Error("storage", "the database is damaged");
     case SQLITE_CONSTRAINT:
-      if (error.what() != std::string_view(damaged_row_message)) break;
+      if (error.what() != damaged_row_message) break;
       damaged = true;
       throw Error("storage", "the database is damaged");
     case SQLITE_FULL:

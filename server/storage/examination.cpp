@@ -14,7 +14,7 @@ void read_ledger(SQLite::Database& connection, const Journal& journal, Owner own
   SQLite::Statement query(connection,
                           "SELECT commits, logged, unlogged, intact FROM checked_ledger");
   if (!query.executeStep() || query.getColumn(3).getInt() == 0)
-    return tell(std::string(unfit) + ": the key is another, or the row is damaged");
+    return tell(unfit + ": the key is another, or the row is damaged");
   found.commits = static_cast<std::uint64_t>(query.getColumn(0).getInt64());
   const auto logged = static_cast<std::uint64_t>(query.getColumn(1).getInt64());
   found.journal = journal.read(owner == Owner::another ? found.commits : UINT64_MAX);

@@ -21,7 +21,7 @@ struct Damage {
 };
 
 /// Of a row whose seal is not that of its values.
-inline constexpr const char* unfit = "its digest does not fit";
+inline const std::string unfit = "its digest does not fit";
 
 /// "answers 12 of p-abc: its digest does not fit"
 std::string text_of(const Damage& damage);

@@ -138,7 +138,7 @@ void Seals::add_triggers(SQLite::Database& connection, const RowChanged& changed
     trigger("inserted", "AFTER INSERT ON main." + table, seal);
     trigger("damaged",
             "BEFORE" + any + " WHEN OLD.seal IS NOT " + seal_call(table, columns, "OLD."),
-            std::string("SELECT RAISE(ABORT, '") + damaged_row_message + "')");
+            "SELECT RAISE(ABORT, '" + damaged_row_message + "')");
     trigger("changed", "AFTER" + any, seal);
     trigger("deleted", "AFTER DELETE ON main." + table,
             "SELECT row_changed('" + table + "', OLD.rowid)");

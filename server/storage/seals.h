@@ -41,7 +41,7 @@ class Seals {
 };
 
 /// Message of the trigger that refuses to change a damaged row.
-inline constexpr const char* damaged_row_message = "the row is damaged";
+inline const std::string damaged_row_message = "the row is damaged";
 
 /// The key of a data folder, which is made where it is missing (mode 0600).
 std::string make_seal_key(const std::filesystem::path& file);

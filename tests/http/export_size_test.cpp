@@ -61,7 +61,7 @@ void fill(storage::Participants& participants, const FrozenStudy& frozen, std::s
 }
 
 TEST(LargeExport, LeavesInLittleMemory) {
-  constexpr std::size_t count = 500;  // 27,000 rows
+  constexpr std::size_t count = 700;  // 37,800 rows
   const TemporaryFolder folder;
   auto frozen = std::make_shared<FrozenStudy>();
   frozen->study = study::parse_study(whole(PENUMBRA_SOURCE_DIR "/studies/thesis-2007.json"));

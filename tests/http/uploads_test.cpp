@@ -7,11 +7,11 @@
 
 #include "scenes/export.h"
 #include "scenes/library.h"
-#include "server/http/archive.h"
 #include "server/http/png.h"
 #include "server/http/scene_upload.h"
 #include "server/storage/data_folder.h"
 #include "tests/http/running_server.h"
+#include "tests/http/zip_files.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -22,6 +22,7 @@ class AnArchive : public testing::Test {
  protected:
   void expect_refused(const std::string& zip, const std::string& reason) {
     const auto target = folder.path / "inside" / "deep";
+    std::filesystem::remove_all(target);
     std::filesystem::create_directories(target);
     try {
       unpack(zip, target);
@@ -215,7 +216,7 @@ TEST_F(UploadedScenes, ThatAStopInterruptedAreSweptAtTheNextStart) {
 /// The process that reads uploads is a script that does as the file says.
 class BadReaders : public RunningServer {
  protected:
-  void adjust(ServeOptions& options) override {
+  void adjust(ServeOptions& served) override {
     const auto script = folder.path / "reader";
     // The file's name is its last argument; a scene document may hold any text.
     std::ofstream(script) << "#!/bin/sh\nfor last; do :; done\n"
@@ -226,8 +227,8 @@ class BadReaders : public RunningServer {
                              "esac\n"
                              "echo '{\"scene\":{\"title\":\"Read\",\"notes\":[]}}'\n";
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);
-    options.worker_command = {script};
-    options.import_deadline_s = 1.0;
+    served.worker_command = {script};
+    served.import_deadline_s = 1.0;
   }
 
   httplib::Result put(const std::string& id, const std::string& document) {
