@@ -9,7 +9,7 @@ namespace penumbra {
 /// A failure that a user can act on. `code` is stable and machine-readable, `field` names the input
 /// at fault (empty where there is none). Front ends map codes to exit states and HTTP states:
 ///   bad_value (400, exit 2)   not_found (404, exit 2)     unsupported (422, exit 1)
-///   unreadable (422, exit 1)  device (500, exit 1)        deadline (504, exit 1)
+///   unreadable (422, exit 1)  device (503, exit 1)        deadline (504, exit 1)
 class Error : public std::runtime_error {
  public:
   Error(std::string code_, const std::string& message, std::string field_ = {})
