@@ -1,6 +1,7 @@
 // Counts a side of a volume where the view ray crosses it behind the visible surface: where camera and
 // surface lie on the same side of its plane. The rasteriser's depths would do, but for surfaces that
 // the plane all but touches: there penumbra wedges must come to the same answer (wedge.frag).
+#include "renderer/shadow_volumes/deep_count.glsl"
 #include "renderer/shadow_volumes/light_side.glsl"
 
 layout(location = 0) flat in vec3 edge_start;
@@ -14,4 +15,5 @@ void main() {
   float camera = frame.camera_position.w > 0.5 ? side_of_plane(plane, frame.camera_position.xyz)
                                                : -dot(plane.normal, frame.camera_direction.xyz);
   if (surface.w == 0.0 || (side_of_plane(plane, surface.xyz) < 0.0) != (camera < 0.0)) discard;
+  count_step();
 }

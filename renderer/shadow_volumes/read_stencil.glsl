@@ -3,10 +3,10 @@
 #define PENUMBRA_READ_STENCIL_GLSL
 uniform usampler2D volume_count;
 
-// 0 .. 255: the stencil wraps.
+// 0 .. 255; what is more reads 255 (deep_counts.h).
 uint count_volumes(vec2 pixel) { return texelFetch(volume_count, ivec2(pixel), 0).r; }
 
-// 0 .. 127, where the highest bit marks samples in which volumes were counted.
+// 0 .. 127, what is more 127, where the highest bit marks samples in which volumes were counted.
 uint count_masked_volumes(vec2 pixel) { return count_volumes(pixel) & 0x7fu; }
 
 // Nought is grey; one and more run from yellow over red; what wrapped below nought is blue.

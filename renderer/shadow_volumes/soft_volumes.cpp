@@ -8,6 +8,9 @@
 namespace penumbra::shadow_volumes {
 namespace {
 
+/// Volumes over each other that overlap_counts.glsl tells apart at a point of the light.
+constexpr std::size_t most_overlaps = 31;
+
 /// CoverageBlock of coverage_table.glsl, before its values.
 struct TableHead {
   static constexpr std::uint32_t point_count = 32;
@@ -54,6 +57,10 @@ void SoftVolumes::draw(PrepareContext& context, const SoftVolumeOptions& options
   unused_ = &context.geometry.position;
   if (!soft) return;
   if (!coverage_) create(context, options);
+  if (options.count_overlaps && context.frame_index == 0 &&
+      surely_crowds(context.scene, context.light, volume_triangles(context, false), most_overlaps))
+    context.notes.push_back("more than " + std::to_string(most_overlaps) +
+                            " volumes overlap: where their penumbrae do, they are wrong");
   draw_wedges(context, options.clamp);
 }
 

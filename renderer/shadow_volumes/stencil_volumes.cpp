@@ -36,7 +36,7 @@ vulkan::GraphicsState stencil_state(const PrepareContext& context, const VolumeO
     for (vulkan::StencilFace* face : {&state.stencil_front, &state.stencil_back}) {
       face->compare = VK_COMPARE_OP_EQUAL;
       face->reference = face->compare_mask = mask_bit;
-      face->write_mask = mask_bit - 1;
+      face->write_mask = most_counted(true);
     }
   return state;
 }
@@ -89,6 +89,16 @@ void note_defects(PrepareContext& context, const VolumeOptions& options) {
 }
 
 }  // namespace
+
+VolumeTriangles volume_triangles(const PrepareContext& context, bool every_edge) {
+  VolumeTriangles triangles;
+  triangles.lit = every_edge;
+  if (every_edge) return triangles;
+  triangles.sheets = masked_instances(context);
+  for (const AdjacencyGroup& group : context.adjacency->host.groups)
+    if (!group.closed) triangles.sheets.insert(group.instance);
+  return triangles;
+}
 
 Parameter ablation_parameter() {
   Parameter ablation;
@@ -194,7 +204,10 @@ void StencilVolumes::add_steps(PrepareContext& context, const VolumeOptions& opt
       source.stages[VK_SHADER_STAGE_FRAGMENT_BIT] = "renderer/shadow_volumes/far_clip.frag";
     vulkan::Bindings bindings = context.frame_bindings;
     if (open_caps) bind_corners(bindings, context);
-    if (counter != nullptr) counter->apply(source, state, bindings);
+    if (counter != nullptr)
+      counter->apply(source, state, bindings);
+    else if (is_deep(context, options))
+      DeepCounts::redirect(source, state);
     const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
     const bool two_sided = options.stencil_passes == 1;
     steps.push_back({&pipeline, bindings, &draws,
@@ -245,9 +258,17 @@ void StencilVolumes::add_near_caps(PrepareContext& context, const VolumeOptions&
   state.stencil_front.pass = state.stencil_back.pass = VK_STENCIL_OP_INCREMENT_AND_WRAP;
   vulkan::Bindings bindings = context.frame_bindings;
   bindings.buffer("NearPlaneBlock", context.constants.push(*near_from_caster));
-  const auto source = volume_program("renderer/shadow_volumes/near_cap.geom", options.every_edge);
+  auto source = volume_program("renderer/shadow_volumes/near_cap.geom", options.every_edge);
+  if (is_deep(context, options)) DeepCounts::redirect(source, state);
   steps.push_back(
       {&context.pipelines.graphics(source, state), bindings, &draws, VK_CULL_MODE_NONE, false});
+}
+
+bool StencilVolumes::is_deep(const PrepareContext& context, const VolumeOptions& options) {
+  if (!deep_)
+    deep_ = may_crowd(context.scene, context.light, volume_triangles(context, options.every_edge),
+                      most_counted(options.masked));
+  return *deep_;
 }
 
 VolumeDrawOptions StencilVolumes::draws_wanted(const PrepareContext& context,
@@ -302,11 +323,13 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
 
   vulkan::RenderTargets targets = targets_of(context);
   targets.clear_stencil = !options.masked;
+  if (is_deep(context, options)) targets.colors = {counts_.target(context)};
   context.pass("volumes", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
     for (const Step& step : steps) step.record(commands, context.scene);
     commands.end_rendering();
   });
+  if (is_deep(context, options)) counts_.store(context, options.masked);
 }
 
 void StencilVolumes::count_fragments(PrepareContext& context, const VolumeOptions& options,

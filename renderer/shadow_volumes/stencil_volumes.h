@@ -3,7 +3,8 @@
 #include <optional>
 #include <set>
 
-#include "renderer/frame/prepare_context.h"
+#include "renderer/shadow_volumes/crowding.h"
+#include "renderer/shadow_volumes/deep_counts.h"
 
 namespace penumbra::shadow_volumes {
 
@@ -38,6 +39,11 @@ Diagnostic count_diagnostic();
 /// Of the stencil, with VolumeOptions::masked; as count_masked_volumes in read_stencil.glsl has it.
 constexpr std::uint32_t mask_bit = 0x80;
 
+/// The largest count that the stencil holds.
+constexpr std::uint32_t most_counted(bool masked) {
+  return masked ? mask_bit - 1 : 0xff;
+}
+
 struct VolumeOptions {
   Counting counting = Counting::behind;
   /// Three sides for every lit triangle instead of silhouettes: needs no adjacency.
@@ -68,8 +74,12 @@ struct VolumeOptions {
 /// Options that parameters of volume_parameters stand for.
 VolumeOptions volume_options(const ParameterValues& parameters);
 
+/// What throws the volumes that such options ask for.
+VolumeTriangles volume_triangles(const PrepareContext& context, bool every_edge);
+
 /// Shadow volumes from the centre of a light, counted in the geometry buffer's stencil: 0 where the
-/// light arrives. What all volume techniques are composed from. Needs stencil and adjacency.
+/// light arrives. Where more may overlap than the stencil counts, DeepCounts counts them first.
+/// What all volume techniques are composed from. Needs stencil and adjacency.
 class StencilVolumes {
  public:
   /// Clears the stencil and draws the volumes of all casters, in a pass named "volumes".
@@ -89,6 +99,8 @@ class StencilVolumes {
   struct Counter;
   /// Which volumes options ask for.
   VolumeDrawOptions draws_wanted(const PrepareContext& context, const VolumeOptions& options);
+  /// Whether more volumes may overlap than the stencil counts.
+  bool is_deep(const PrepareContext& context, const VolumeOptions& options);
   /// Counts volumes, or with a counter the fragments that would.
   void add_steps(PrepareContext& context, const VolumeOptions& options, const VolumeDraws& draws,
                  std::vector<Step>& steps, const Counter* counter);
@@ -98,6 +110,8 @@ class StencilVolumes {
 
   const vulkan::Image* stencil_ = nullptr;
   std::optional<std::set<std::uint32_t>> hidden_;  ///< casters in the shadow of others, once sought
+  std::optional<bool> deep_;                       ///< once sought
+  DeepCounts counts_;
 };
 
 }  // namespace penumbra::shadow_volumes

@@ -1,0 +1,3 @@
+#include "renderer/shadow_volumes/deep_count.glsl"
+
+void main() { count_step(); }
