@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace penumbra::techniques::occluder_textures {
 namespace {
@@ -59,12 +60,13 @@ glm::dmat3 principal_axes(glm::dmat3 m) {
   return axes;
 }
 
+double area_of(const Triangle& t) {
+  return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+}
+
 glm::dmat3 principal_axes(const Body& body) {
   glm::dvec3 mean(0.0);
   double area = 0.0;
-  const auto area_of = [](const Triangle& t) {
-    return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
-  };
   for (const Triangle& t : body.triangles) {
     mean += area_of(t) * (t[0] + t[1] + t[2]) / 3.0;
     area += area_of(t);
@@ -81,6 +83,105 @@ glm::dmat3 principal_axes(const Body& body) {
     spread += area_of(t) * glm::outerProduct(sum, sum);
   }
   return principal_axes(spread);
+}
+
+/// Corners by position: equal ones have one number.
+class Corners {
+ public:
+  std::size_t number(const glm::dvec3& corner) {
+    return numbers_.try_emplace(glm::vec3(corner), numbers_.size()).first->second;
+  }
+
+ private:
+  std::map<glm::vec3, std::size_t, Before> numbers_;
+};
+
+using NumberedTriangle = std::array<std::size_t, 3>;
+
+std::vector<NumberedTriangle> numbered(const Body& body) {
+  Corners corners;
+  std::vector<NumberedTriangle> list;
+  for (const Triangle& t : body.triangles)
+    list.push_back({corners.number(t[0]), corners.number(t[1]), corners.number(t[2])});
+  return list;
+}
+
+/// A body encloses space if its mean thickness is more than this part of its size.
+constexpr double thinnest = 1e-5;
+
+/// Whether every edge is run along as often one way as the other, no triangle lies on the back of
+/// another, and there is something between: a sheet modelled from both sides encloses nothing.
+bool encloses_space(const Body& body) {
+  double volume = 0.0, area = 0.0;
+  Bounds box;
+  for (const Triangle& t : body.triangles) {
+    const glm::dvec3 from = body.triangles[0][0];
+    volume += glm::dot(t[0] - from, glm::cross(t[1] - from, t[2] - from)) / 6.0;
+    area += area_of(t);
+    for (const glm::dvec3& corner : t) box.add(corner);
+  }
+  if (std::abs(volume) <= thinnest * area * glm::length(box.size())) return false;
+  std::map<std::pair<std::size_t, std::size_t>, int> runs;
+  std::set<NumberedTriangle> known;
+  for (const NumberedTriangle& t : numbered(body)) {
+    NumberedTriangle sorted = t;
+    std::sort(sorted.begin(), sorted.end());
+    if (!known.insert(sorted).second) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = t[k], to = t[(k + 1) % 3];
+      runs[std::minmax(from, to)] += from < to ? 1 : -1;
+    }
+  }
+  return std::all_of(runs.begin(), runs.end(), [](const auto& run) { return run.second == 0; });
+}
+
+/// A part may leave the plane of its largest triangle by this part of the body's size.
+constexpr double bend = 0.01;
+
+/// Parts of a sheet, each grown from the largest triangle left over the edges around it.
+std::vector<Body> flat_parts(const Body& sheet) {
+  const std::vector<NumberedTriangle> corners = numbered(sheet);
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> at_edge;
+  Bounds box;
+  for (std::size_t t = 0; t < corners.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      at_edge[std::minmax(corners[t][k], corners[t][(k + 1) % 3])].push_back(t);
+      box.add(sheet.triangles[t][k]);
+    }
+  std::vector<std::size_t> largest_first(corners.size());
+  std::iota(largest_first.begin(), largest_first.end(), std::size_t{0});
+  std::stable_sort(largest_first.begin(), largest_first.end(), [&](std::size_t a, std::size_t b) {
+    return area_of(sheet.triangles[a]) > area_of(sheet.triangles[b]);
+  });
+  std::vector<bool> taken(corners.size(), false);
+  std::vector<Body> parts;
+  for (const std::size_t seed : largest_first) {
+    const Triangle& plane = sheet.triangles[seed];
+    if (taken[seed] || area_of(plane) <= 0.0) continue;
+    const glm::dvec3 normal = glm::normalize(glm::cross(plane[1] - plane[0], plane[2] - plane[0]));
+    const auto is_near = [&](const Triangle& triangle) {
+      return std::all_of(triangle.begin(), triangle.end(), [&](const glm::dvec3& corner) {
+        return std::abs(glm::dot(normal, corner - plane[0])) <= bend * glm::length(box.size());
+      });
+    };
+    Body part{sheet.instance, {}, true, 0};
+    std::vector<std::size_t> front{seed};
+    taken[seed] = true;
+    while (!front.empty()) {
+      const std::size_t t = front.back();
+      front.pop_back();
+      part.triangles.push_back(sheet.triangles[t]);
+      for (std::size_t k = 0; k < 3; ++k)
+        for (const std::size_t next :
+             at_edge[std::minmax(corners[t][k], corners[t][(k + 1) % 3])]) {
+          if (taken[next] || !is_near(sheet.triangles[next])) continue;
+          taken[next] = true;
+          front.push_back(next);
+        }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 double thinness(const OrientedBox& box) {
@@ -108,7 +209,7 @@ std::vector<Body> find_bodies(const GpuScene& scene, const std::set<std::uint32_
     std::map<std::size_t, std::size_t> place;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto [entry, fresh] = place.try_emplace(sets.root(t), bodies.size());
-      if (fresh) bodies.push_back({instance, {}});
+      if (fresh) bodies.push_back({instance, {}, false, 0});
       Triangle triangle;
       for (std::size_t k = 0; k < 3; ++k)
         triangle[k] = glm::dvec3(scene.positions()[triangles[t][k]]);
@@ -116,6 +217,28 @@ std::vector<Body> find_bodies(const GpuScene& scene, const std::set<std::uint32_
     }
   }
   return bodies;
+}
+
+FlatParts in_flat_parts(std::vector<Body> bodies, std::size_t most) {
+  FlatParts result;
+  std::uint32_t whole = 0;
+  for (Body& body : bodies) {
+    std::vector<Body> parts;
+    if (!encloses_space(body)) {
+      parts = flat_parts(body);
+      if (parts.size() > most) {
+        ++result.open;
+        parts.clear();
+      }
+    }
+    if (parts.empty()) parts.push_back(std::move(body));
+    for (Body& part : parts) {
+      part.whole = whole;
+      result.bodies.push_back(std::move(part));
+    }
+    ++whole;
+  }
+  return result;
 }
 
 OrientedBox box_around(const Body& body, const glm::dmat3& axes) {

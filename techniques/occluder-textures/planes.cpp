@@ -61,6 +61,7 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
     candidate.section = section;
     if (candidate.area > 0.0) list.push_back(candidate);
   };
+  if (body.sheet) return add(order[0], 0.0, false);
   if (box.half[order[0]] <= flat * box.half[order[1]]) {
     if (meets_silhouette(body, box, order[0])) add(order[0], 0.0, false);
     return;
@@ -81,6 +82,8 @@ void add_candidates(const Body& body, const OrientedBox& box, std::vector<Candid
 /// Whether b's bodies may as well be cut by a's plane.
 bool coincide(const Candidate& a, const Candidate& b) {
   if (a.section || b.section) return false;
+  // A flat part shadows nothing near its plane: a body beside it must not go by that.
+  if (a.bodies.front()->sheet != b.bodies.front()->sheet) return false;
   const glm::dvec3 normal = a.rectangle.normal();
   if (std::abs(glm::dot(normal, b.rectangle.normal())) < 0.9998) return false;
   const double offset = std::abs(glm::dot(normal, b.rectangle.center - a.rectangle.center));
@@ -129,9 +132,31 @@ void draw_silhouettes(Picture& picture, const Rectangle& rectangle,
                       const PlaneOptions& options) {
   for (const Body* body : casters) picture.add_silhouette(rectangle, *body);
   if (options.extend == 0) return;
-  Picture inside(options.resolution);
-  for (const Body& body : all) inside.add_section(rectangle, body);
+  Picture inside(options.resolution), sheet(options.resolution);
+  for (const Body& body : all)
+    if (!body.sheet)
+      inside.add_section(rectangle, body);
+    else if (!casters.empty() && casters.front()->sheet && body.whole == casters.front()->whole)
+      sheet.add_silhouette(rectangle, body);
   picture.extend_within(inside, options.extend);
+  // No line of light between the parts of a sheet.
+  picture.extend_within(sheet, 1);
+}
+
+/// How far from its plane a flat part reaches, and rounding.
+double margin_of(const Rectangle& rectangle, const std::vector<const Body*>& bodies) {
+  double farthest = 0.0;
+  Bounds box;
+  for (const Body* body : bodies) {
+    if (!body->sheet) return 0.0;
+    for (const Triangle& triangle : body->triangles)
+      for (const glm::dvec3& corner : triangle) {
+        box.add(corner);
+        farthest =
+            std::max(farthest, std::abs(glm::dot(corner - rectangle.center, rectangle.normal())));
+      }
+  }
+  return 1.01 * farthest + 1e-5 * (glm::length(box.size()) + glm::length(box.center()));
 }
 
 /// Bytes that all textures of a light may take, and layers that a device is sure to have.
@@ -142,6 +167,7 @@ constexpr std::size_t most_textures = 1024;
 struct Model {
   std::vector<glm::dmat4> placed;  ///< from the first instance to each, in the renderer's space
   std::vector<Body> bodies;        ///< of the first instance
+  std::size_t open = 0;            ///< of these, sheets that are cut as if they were closed
 };
 
 /// Whether a matrix keeps right angles and the ratio of lengths.
@@ -155,7 +181,7 @@ bool is_similarity(const glm::dmat4& m) {
   return scale > 0.0;
 }
 
-std::vector<Model> find_models(const GpuScene& scene) {
+std::vector<Model> find_models(const GpuScene& scene, const PlaneOptions& options) {
   std::set<std::uint32_t> casters;
   for (const DrawRange& range : scene.ranges())
     if (range.casts_shadow) casters.insert(range.instance);
@@ -176,7 +202,8 @@ std::vector<Model> find_models(const GpuScene& scene) {
     }
     if (found) continue;
     firsts.emplace_back(instance, models.size());
-    models.push_back({{glm::dmat4(1.0)}, find_bodies(scene, {instance})});
+    FlatParts parts = in_flat_parts(find_bodies(scene, {instance}), options.most_planes);
+    models.push_back({{glm::dmat4(1.0)}, std::move(parts.bodies), parts.open});
   }
   return models;
 }
@@ -228,7 +255,7 @@ std::size_t PlaneSet::planes() const {
 }
 
 PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
-  const std::vector<Model> models = find_models(scene);
+  const std::vector<Model> models = find_models(scene, options);
   std::vector<Candidate> list;
   for (std::size_t i = 0; i < models.size(); ++i) {
     std::vector<Candidate> own = candidates_of(scene, models[i]);
@@ -245,7 +272,10 @@ PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
   std::vector<std::vector<const Candidate*>> kept(models.size());
   for (const Candidate& candidate : list) {
     const Model& model = models[candidate.model];
-    OccluderPlane plane{candidate.rectangle, set.textures.size(), {}};
+    OccluderPlane plane{candidate.rectangle,
+                        set.textures.size(),
+                        {},
+                        margin_of(candidate.rectangle, candidate.bodies)};
     Picture picture(options.resolution);
     fit(plane.rectangle, candidate.bodies, options.resolution);
     if (candidate.section)
@@ -257,11 +287,13 @@ PlaneSet generate_planes(const GpuScene& scene, const PlaneOptions& options) {
     kept[candidate.model].push_back(&candidate);
   }
   for (std::size_t i = 0; i < models.size(); ++i) {
+    set.open += models[i].open * models[i].placed.size();
     set.bodies += models[i].bodies.size() * models[i].placed.size();
     set.represented += count_represented(kept[i]) * models[i].placed.size();
     for (const glm::dmat4& placed : models[i].placed) {
       PlaneGroup group;
       for (OccluderPlane plane : planes[i]) {
+        plane.margin *= glm::length(glm::dvec3(placed[0]));
         plane.rectangle = moved(plane.rectangle, placed);
         group.planes.push_back(plane);
       }

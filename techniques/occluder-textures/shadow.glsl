@@ -3,7 +3,7 @@
 // meets the box around them.
 struct OccluderPlaneData {
   vec4 center;  // xyz world, w layer of the texture
-  vec4 normal;  // xyz unit
+  vec4 normal;  // xyz unit, w m: shadows nothing nearer
   vec4 right;   // xyz unit over the texture's width: 1 across it
   vec4 up;      // likewise
   vec4 low;     // box of the receivers
@@ -35,7 +35,8 @@ float light_past(OccluderPlaneData plane, ShadowQuery query) {
   if (abs(approach) < 1e-6) return 1.0;
   float along = dot(plane.center.xyz - query.position, plane.normal.xyz) / approach;
   // Behind the receiver, or beyond the light, a plane is nothing but a false shadow.
-  if (parameter_sign_test != 0 && (along <= 0.0 || along >= query.light_distance)) return 1.0;
+  float nearest = plane.normal.w / abs(approach);
+  if (parameter_sign_test != 0 && (along <= nearest || along >= query.light_distance)) return 1.0;
   vec3 offset = query.position + along * query.to_light - plane.center.xyz;
   vec2 place = 0.5 + vec2(dot(offset, plane.right.xyz), dot(offset, plane.up.xyz));
   if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) return 1.0;

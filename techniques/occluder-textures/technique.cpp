@@ -32,7 +32,7 @@ PlaneData data_of(const OccluderPlane& plane) {
   const glm::vec3 everywhere(std::numeric_limits<float>::max());
   PlaneData data;
   data.center = glm::vec4(rectangle.center, static_cast<float>(plane.texture));
-  data.normal = glm::vec4(rectangle.normal(), 0.0);
+  data.normal = glm::vec4(rectangle.normal(), plane.margin);
   data.right = glm::vec4(rectangle.right / rectangle.size.x, 0.0);
   data.up = glm::vec4(rectangle.up / rectangle.size.y, 0.0);
   const bool bounded = !plane.receivers.empty();
@@ -71,6 +71,12 @@ class OccluderTextures : public Technique {
       context.notes.push_back(
           "occluder textures ignore alpha masks: masked casters cast the shadows of whole "
           "triangles");
+    if (set.open > 0)
+      context.notes.push_back(
+          "casters with open edges and too many flat parts for a plane each, whose shadows may "
+          "have "
+          "gaps and spots: " +
+          std::to_string(set.open));
     context.notes.push_back(std::to_string(set.planes()) +
                             (authored ? " planes of the scene" : " generated planes") +
                             " stand for " + std::to_string(set.represented) + " of " +

@@ -181,5 +181,92 @@ TEST(OccluderTextures, of_the_scene_survive_writing_and_reading_and_change_its_h
   EXPECT_NE(scenes::content_hash(again), scenes::content_hash(scene));
 }
 
+/// Ground, lamp and camera around what hangs a metre over the ground.
+scenes::SceneBuilder stage() {
+  scenes::SceneBuilder b("sheets", "Sheets");
+  b.ground({-3.0, -3.0}, {3.0, 3.0}, b.look("grey", glm::vec3(0.7f)));
+  b.spot("lamp", {1.1, 4.0, 0.7}, {0.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 50.0, LightExtent{});
+  b.camera("main", {0.0, 4.0, 3.4}, {0.0, 0.3, 0.0}, 45.0);
+  return b;
+}
+
+/// A card of 1.4 m by 0.8 m, its back as well where `doubled`.
+scenes::Solid card(bool doubled) {
+  scenes::Solid solid;
+  for (const glm::dvec2 corner : {glm::dvec2(-0.7, -0.4), {0.7, -0.4}, {0.7, 0.4}, {-0.7, 0.4}})
+    solid.add_point({corner.x, 0.0, corner.y});
+  solid.add_quad(3, 2, 1, 0);
+  if (doubled) solid.add_quad(0, 1, 2, 3);
+  return solid;
+}
+
+/// A wall around the y axis, open above and below.
+scenes::Solid shade(int sides) {
+  scenes::Solid solid;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 6.283185307179586 * i / sides;
+    const glm::dvec2 out(std::cos(angle), std::sin(angle));
+    solid.add_point({0.5 * out.x, 0.0, 0.5 * out.y});
+    solid.add_point({0.3 * out.x, 0.4, 0.3 * out.y});
+  }
+  for (int i = 0; i < sides; ++i) {
+    const auto a = static_cast<std::uint32_t>(2 * i);
+    const auto b = static_cast<std::uint32_t>(2 * ((i + 1) % sides));
+    solid.add_quad(a, a + 1, b + 1, b);
+  }
+  return solid;
+}
+
+void make_double_sided(Scene& scene) {
+  for (Material& material : scene.materials) material.double_sided = true;
+}
+
+TEST(OccluderTextures, of_flat_cards_are_their_shadows_however_they_are_turned) {
+  for (const bool doubled : {false, true})
+    for (int turn = 0; turn < 8; ++turn) {
+      scenes::SceneBuilder b = stage();
+      const glm::dvec3 axis =
+          glm::normalize(glm::dvec3(std::sin(1.0 + 3.0 * turn), 0.3, std::cos(2.0 * turn)));
+      b.place(card(doubled), b.look("red", glm::vec3(0.5f)), "card",
+              glm::translate(glm::dmat4(1.0), {0.0, 1.0, 0.0}) *
+                  glm::rotate(glm::dmat4(1.0), turn == 0 ? 0.0 : 0.7, axis));
+      make_double_sided(b.scene);
+      const RenderResult rays = rays_of(b.scene);
+      EXPECT_GT(error_of(draw(b.scene, "none"), rays).rms, 0.1);
+      EXPECT_LT(error_of(draw(b.scene, "occluder-textures"), rays).rms, 0.04)
+          << "turn " << turn << " doubled " << doubled;
+    }
+}
+
+TEST(OccluderTextures, of_open_shades_and_crates_are_those_of_their_sides) {
+  for (const int sides : {4, 7, 16})
+    for (const bool lamp_inside : {false, true}) {
+      scenes::SceneBuilder b = stage();
+      b.place(shade(sides), b.look("red", glm::vec3(0.5f)), "shade",
+              glm::translate(glm::dmat4(1.0), {0.0, 1.0, 0.0}));
+      make_double_sided(b.scene);
+      Light& lamp = b.scene.lights[0];
+      if (lamp_inside) {
+        lamp.kind = LightKind::point;
+        lamp.position = {0.0, 1.2, 0.0};
+      }
+      const RenderResult rays = rays_of(b.scene);
+      const auto none = error_of(draw(b.scene, "none"), rays);
+      const auto own = error_of(draw(b.scene, "occluder-textures"), rays);
+      EXPECT_GT(none.rms, 0.1);
+      EXPECT_LT(own.rms, 0.25 * none.rms) << sides << " sides, lamp inside " << lamp_inside;
+    }
+}
+
+TEST(OccluderTextures, say_that_a_round_sheet_has_too_many_parts) {
+  scenes::Solid half = scenes::sphere(0.5, 64, 32);
+  std::erase_if(half.triangles, [&](const auto& t) { return half.points[t[0]].y < 0.0; });
+  scenes::SceneBuilder b = stage();
+  b.place(half, b.look("red", glm::vec3(0.5f)), "bowl",
+          glm::translate(glm::dmat4(1.0), {0.0, 1.0, 0.0}));
+  EXPECT_THAT(draw(b.scene, "occluder-textures", {{"planes", std::int64_t{4}}}).notes,
+              testing::Contains(testing::HasSubstr("too many flat parts")));
+}
+
 }  // namespace
 }  // namespace penumbra
