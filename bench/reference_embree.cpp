@@ -69,8 +69,7 @@ class EmbreeProgram {
   EmbreeProgram(const EmbreeProgram&) = delete;
   EmbreeProgram& operator=(const EmbreeProgram&) = delete;
 
-  std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size,
-                                  float offset) const;
+  std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size) const;
   /// Rays that reach one of `points`, of all from `receivers`, on all cores.
   std::uint64_t count_lit(const std::vector<Receiver>& receivers, const std::vector<Packet>& points,
                           bool directional) const;
@@ -103,8 +102,8 @@ RTCScene EmbreeProgram::add(const GpuScene& scene, bool casters_only) {
   return made;
 }
 
-std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera, std::uint32_t size,
-                                               float offset) const {
+std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera,
+                                               std::uint32_t size) const {
   std::vector<Receiver> list;
   for (std::uint32_t y = 0; y < size; ++y)
     for (std::uint32_t x = 0; x < size; ++x) {
@@ -128,7 +127,8 @@ std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera, std
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
       glm::vec3 normal = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
       if (glm::dot(normal, direction) > 0.0f) normal = -normal;
-      list.push_back({start + query.ray.tfar * direction + offset * normal, normal});
+      const glm::vec3 position = start + query.ray.tfar * direction;
+      list.push_back({position + reference::offset_of(position, camera.position) * normal, normal});
     }
   return list;
 }
@@ -199,8 +199,7 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
                      scene_frame(*scene, scene->cameras.front()));
   const EmbreeProgram embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
-  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
-  const std::vector<Receiver> receivers = embree.receivers(camera, size, offset);
+  const std::vector<Receiver> receivers = embree.receivers(camera, size);
 
   Renderer renderer({"", false});
   const auto render = [&](const char* mode, std::uint32_t points) {

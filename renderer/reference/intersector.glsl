@@ -66,6 +66,12 @@ vec4 edge_plane(Shaft s, vec3 b, vec3 c) {
   return vec4(-normal, s.finite * dot(normal, s.origin));
 }
 
+float longest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+// Of a triangle's plane, whose corners are rounded, no more is known than this sine of the angle from a
+// corner. It is several roundings wide.
+const float in_plane = 4e-7;
+
 TrianglePlanes planes_of(Shaft s, uint triangle) {
   int first = int(3u * triangle);
   vec3 a = uintBitsToFloat(texelFetch(hierarchy_triangles, first).xyz);
@@ -73,8 +79,10 @@ TrianglePlanes planes_of(Shaft s, uint triangle) {
   vec3 c = uintBitsToFloat(texelFetch(hierarchy_triangles, first + 2).xyz);
   vec3 normal = cross(b - a, c - a);
   float side = dot(normal, a - s.origin);
-  // A triangle seen edge-on, or without area, hides nothing: its sign is 0 and so are its planes.
-  float sign_of_side = sign(side);
+  // A triangle seen edge-on, or without area, hides nothing: its sign is 0 and so are its planes. Such
+  // is the receiver's own, and its neighbours in the same plane.
+  float doubt = in_plane * longest(b - a) * longest(c - a) * longest(a - s.origin);
+  float sign_of_side = abs(side) <= doubt ? 0.0 : sign(side);
   TrianglePlanes t;
   t.edges[0] = sign_of_side * edge_plane(s, b, c);
   t.edges[1] = sign_of_side * edge_plane(s, c, a);

@@ -20,8 +20,8 @@ layout(r32ui) uniform uimage2DArray candidates;  // layer 0 the first node, laye
 const uint all_hidden = 0xffffffffu;
 
 // Points behind the facet's plane are hidden by the receiver itself, whatever stands around it.
-uint hidden_by_receiver(vec3 origin, vec3 normal) {
-  float limit = shaft_data.box_low.w * dot(normal, origin);
+uint hidden_by_receiver(vec3 position, vec3 normal) {
+  float limit = shaft_data.box_low.w * dot(normal, position);
   uint mask = 0u;
 #define BEHIND(i) mask |= dot(normal, light_points[i].xyz) <= limit ? 1u << (i) : 0u;
   ALL_POINTS(BEHIND)
@@ -163,8 +163,8 @@ uint find_candidates(ivec2 texel, Shaft shaft, uint kind) {
 }
 
 // What the receiver's own facet says of the whole light.
-uint facing(Shaft shaft, vec3 normal) {
-  vec2 range = range_of(shaft, vec4(normal, -shaft.finite * dot(normal, shaft.origin)));
+uint facing(Shaft shaft, vec3 position, vec3 normal) {
+  vec2 range = range_of(shaft, vec4(normal, -shaft.finite * dot(normal, position)));
   return range.y < 0.0 ? dark : range.x > 0.0 ? fully_lit : partly_lit;
 }
 #else
@@ -264,20 +264,21 @@ void main() {
   vec4 position = texelFetch(geometry_position, texel, 0);
   uvec4 words = texelFetch(geometry_words, texel, 0);
   vec3 normal = unpack_unit_vector(words.y);
-  vec3 origin = position.xyz + shaft_data.box_high.w * normal;
+  float reach = length(position.xyz) + length(position.xyz - frame.camera_position.xyz);
+  vec3 origin = position.xyz + shaft_data.box_high.w * reach * normal;
   bool unread = !inside || position.w == 0.0 || outside_light(position.xyz);
 #ifdef FIND_CANDIDATES
   Shaft shaft = make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w);
   // What the shading normal is turned from is not lit, whatever the facet sees.
-  bool shaded = facing(shaft, unpack_unit_vector(words.x)) != dark;
-  uint kind = find_candidates(texel, shaft, unread || !shaded ? dark : facing(shaft, normal));
+  bool shaded = facing(shaft, position.xyz, unpack_unit_vector(words.x)) != dark;
+  uint kind = find_candidates(texel, shaft, unread || !shaded ? dark : facing(shaft, position.xyz, normal));
   if (inside) imageStore(occlusion_mask, texel, uvec4(kind == fully_lit ? 0u : all_hidden));
   if (work.last != 0u) list_sample(texel, kind);
 #elif defined(LIST_OCCLUDERS)
   list_occluders(texel, make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w));
 #else
   Shaft shaft = make_shaft(origin, shaft_data.box_low.xyz, shaft_data.box_high.xyz, shaft_data.box_low.w);
-  uint mask = shaft_data.unused.x | hidden_by_receiver(origin, normal);
+  uint mask = shaft_data.unused.x | hidden_by_receiver(position.xyz, normal);
   find_mask(texel, shaft, unread ? all_hidden : mask);
 #endif
 }

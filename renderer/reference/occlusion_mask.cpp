@@ -61,9 +61,8 @@ shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   Box whole = extent_box(context.light);
   widen(batch, directional, context.scene);
   widen(whole, directional, context.scene);
-  const float diagonal = glm::length(context.scene.high() - context.scene.low());
   data.box_low = glm::vec4(batch.low, directional ? 0.0 : 1.0);
-  data.box_high = glm::vec4(batch.high, receiver_offset * diagonal);
+  data.box_high = glm::vec4(batch.high, receiver_offset);
   data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
   data.whole_high = glm::vec4(whole.high, 0.0);
   data.unused.x = context.points_in_batch < batch_size ? ~0u << context.points_in_batch : 0u;
@@ -86,6 +85,10 @@ std::uint32_t set_count(const PrepareContext& context) {
 }
 
 }  // namespace
+
+float offset_of(const glm::vec3& position, const glm::vec3& camera_position) {
+  return receiver_offset * (glm::length(position) + glm::length(position - camera_position));
+}
 
 void OcclusionMask::trace(PrepareContext& context) {
   // One batch is not worth a look at the whole light first.

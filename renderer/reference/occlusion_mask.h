@@ -6,14 +6,17 @@
 
 namespace penumbra::reference {
 
-/// Distance of a receiver from its facet, per metre of the scene's diagonal. Every ray passes what
-/// it should touch by as much: 2e-5 moved borders of shadows in 0.16 % of the island's pixels.
-/// Rounding of positions shows up as acne at 3e-7.
-constexpr float receiver_offset = 3e-6f;
+/// Distance of a receiver from its facet, per metre of its coordinates and of its distance from the
+/// camera: what rounding of interpolated positions moves them by, several times over. Every ray
+/// passes what it should touch by as much, so it is not made of the scene's size.
+constexpr float receiver_offset = 1e-6f;
+
+/// That distance, m, of a point of the renderer's world space. As occlusion_mask.comp has it.
+float offset_of(const glm::vec3& position, const glm::vec3& camera_position);
 
 /// For every sample of the frame and every light point of a batch: is the segment between them (or
 /// the ray towards a directional light) cut by a caster? One bit each; exact up to float rounding.
-/// Receivers start receiver_offset of the scene's diagonal above their facet.
+/// Receivers start offset_of their place above their facet.
 class OcclusionMask {
  public:
   /// Nodes that one dispatch walks: far below the 65,535 rounds after which some drivers end loops.

@@ -82,7 +82,7 @@ struct MapData {
 /// that need not be unit.
 struct ShaftData {
   vec4 box_low;    // box of the batch; w 1 for positions, 0 for directions
-  vec4 box_high;   // w distance that receivers are moved along their normal, m
+  vec4 box_high;   // w distance that receivers are moved along their normal, per metre
   vec4 whole_low;  // box of the whole extent; w distance of its farthest point from the centre,
                    // m, or a tangent for directions
   vec4 whole_high;

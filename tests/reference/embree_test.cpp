@@ -31,7 +31,6 @@ Verdict compare(const std::shared_ptr<const Scene>& scene, std::uint32_t count) 
   const Embree embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
   const std::vector<Receiver> receivers = embree.receivers(camera, size);
-  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
   Verdict verdict;
   for (const Light& light : scene->lights) {
     const WorldLight world = world_light(light, gpu.origin());
@@ -41,6 +40,7 @@ Verdict compare(const std::shared_ptr<const Scene>& scene, std::uint32_t count) 
     for (std::size_t r = 0; r < receivers.size(); ++r) {
       if (!receivers[r].surface || !inside_light(world, receivers[r].position)) continue;
       for (std::size_t p = 0; p < points.size(); ++p) {
+        const float offset = reference::offset_of(receivers[r].position, camera.position);
         const bool truth =
             embree.hidden(receivers[r], offset, glm::vec4(glm::vec3(points[p]), finite));
         const bool found = (masks[p / 32][r] >> (p % 32) & 1u) != 0;

@@ -191,6 +191,8 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
   std::vector<std::string> notes;
   shader::FrameData frame{};
   frame.size = glm::vec4(size, size, 1.0f, 1.0f);
+  const glm::dvec3 eye = scene_->scene().cameras.front().position;
+  frame.camera_position = glm::vec4(scene_->to_world(eye), 1.0f);
   const vulkan::Buffer copied(device_, ledger_, "masks", receivers.size() * 4,
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, vulkan::MemoryKind::readback);
   reference::OcclusionMask mask(nodes_per_range);

@@ -78,9 +78,8 @@ TEST_F(ReferenceUncertainty, PassesATestOfEveryPixelAgainstEmbreesOwnScrambles) 
   const Tracer tracer(scene);
   const GpuScene& gpu = tracer.scene();
   const Embree embree(gpu);
-  const auto receivers =
-      embree.receivers(camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0), size);
-  const float offset = reference::receiver_offset * glm::length(gpu.high() - gpu.low());
+  const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
+  const auto receivers = embree.receivers(camera, size);
   const WorldLight light = world_light(scene->lights.front(), gpu.origin());
   const auto points = light_points(light, samples, 1, 12345, false, 16);
 
@@ -91,6 +90,7 @@ TEST_F(ReferenceUncertainty, PassesATestOfEveryPixelAgainstEmbreesOwnScrambles) 
   const double limit = boost::math::quantile(boost::math::students_t(15.0), 1.0 - 0.5 * alpha);
   for (std::size_t p = 0; p < receivers.size(); ++p) {
     if (!receivers[p].surface || ours.judged.pixels[p] < 1.0f) continue;
+    const float offset = reference::offset_of(receivers[p].position, camera.position);
     const Estimate truth = embree_visibility(embree, receivers[p], offset, points);
     const double difference = static_cast<double>(ours.visibility.pixels[p]) - truth.mean;
     ++tested;
