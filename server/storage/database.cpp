@@ -4,57 +4,52 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "renderer/error.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/folder_files.h"
+#include "server/storage/migrate.h"
 
 namespace penumbra::server::storage {
 namespace {
 
 constexpr int busy_ms = 3000;  // a lock held longer than this is somebody else's trouble
-constexpr std::size_t largest_batch = 64;  // changes that share one commit
-constexpr int purge_busy_ms = 20;          // answers wait no longer for a withdrawal to be cleared
+constexpr std::size_t largest_batch = 256;  // changes that share one commit
+constexpr int most_readers = 16;            // each compiles its views and statements once
+constexpr int purge_busy_ms = 20;           // answers wait no longer for a withdrawal to be cleared
 constexpr auto purge_pause = std::chrono::milliseconds(250);
 constexpr std::int64_t log_limit = 4
                                    << 20;  // bytes that the write-ahead log keeps when it is reset
 
-int number_of(const EmbeddedFile& file) {
-  const auto name = file.path.substr(file.path.rfind('/') + 1);
-  int number = 0;
-  std::from_chars(name.data(), name.data() + name.size(), number);
-  return number;
-}
-
-constexpr int first_with_seals = 4;  // migration that added them
-
-void seal_first_time(SQLite::Database& connection) {
-  Seals::seal_all(connection);
-  SQLite::Statement rows(connection, "UPDATE ledger SET unlogged = ?");
-  rows.bind(1, text_of(seals_of(connection)));
-  rows.exec();
-  Seals::seal_all(connection);
-}
-
-/// Brings the tables to the newest version; a database of a newer program is refused.
-void migrate(SQLite::Database& connection) {
-  std::vector<EmbeddedFile> files(migrations().begin(), migrations().end());
-  std::sort(files.begin(), files.end(),
-            [](const auto& a, const auto& b) { return a.path < b.path; });
-  const int present = connection.execAndGet("PRAGMA user_version").getInt();
-  const int newest = files.empty() ? 0 : number_of(files.back());
-  if (present > newest)
-    throw Error("storage", "the data folder was written by a newer version of the program", "data");
-  for (const auto& file : files) {
-    if (number_of(file) <= present) continue;
-    SQLite::Transaction transaction(connection, SQLite::TransactionBehavior::IMMEDIATE);
-    connection.exec(std::string(file.text));
-    // Rows from before there were seals; a later file that changes rows seals those it changed.
-    if (number_of(file) == first_with_seals) seal_first_time(connection);
-    connection.exec("PRAGMA user_version = " + std::to_string(number_of(file)));
-    transaction.commit();
+/// What a change did is undone at the end of the block unless it was released. SQLiteCpp's own one
+/// compiles four statements for each change.
+class Savepoint {
+ public:
+  explicit Savepoint(Connection& connection_) : connection(connection_) {
+    connection.query("SAVEPOINT change")->exec();
   }
-}
+  ~Savepoint() {
+    if (released || sqlite3_get_autocommit(connection.getHandle()) != 0) return;
+    try {
+      connection.query("ROLLBACK TO change")->exec();
+      connection.query("RELEASE change")->exec();
+    } catch (const SQLite::Exception& error) {
+      spdlog::error("a change cannot be undone by itself: {}", error.what());
+      connection.tryExec("ROLLBACK");  // with its neighbours then
+    }
+  }
+  Savepoint(const Savepoint&) = delete;
+  Savepoint& operator=(const Savepoint&) = delete;
+
+  void release() {
+    connection.query("RELEASE change")->exec();
+    released = true;
+  }
+
+ private:
+  Connection& connection;
+  bool released = false;
+};
 
 }  // namespace
 
@@ -70,7 +65,7 @@ Database::Database(const std::filesystem::path& file) : path(file) {
 
 bool Database::holds_a_study() const {
   std::error_code failure;
-  const auto pictures = path.parent_path() / "pictures";
+  const auto pictures = path.parent_path() / pictures_name;
   return std::filesystem::is_directory(pictures, failure) &&
          !std::filesystem::is_empty(pictures, failure);
 }
@@ -81,8 +76,8 @@ void Database::refuse(const std::string& why) {
 }
 
 void Database::open_writer() {
-  const auto key_file = path.parent_path() / "integrity.key";
-  const auto journal_file = path.parent_path() / "answers.journal";
+  const auto key_file = path.parent_path() / key_name;
+  const auto journal_file = path.parent_path() / journal_name;
   std::error_code failure;
   const auto size = std::filesystem::file_size(path, failure);
   const bool has_key = std::filesystem::exists(key_file);
@@ -94,8 +89,8 @@ void Database::open_writer() {
     if (holds_a_study() || (journal && journal->read().commit > 0))
       refuse("the database is missing or empty beside the files of a study");
 
-  writer = std::make_unique<SQLite::Database>(
-      path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_ms);
+  writer = std::make_unique<Connection>(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                                        busy_ms);
   std::filesystem::permissions(
       path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
   writer->exec("PRAGMA journal_mode = WAL");
@@ -106,7 +101,7 @@ void Database::open_writer() {
   if (writer->execAndGet("PRAGMA integrity_check").getString() != "ok")
     refuse("its structure is damaged");
 
-  const bool sealed = writer->execAndGet("PRAGMA user_version").getInt() >= first_with_seals;
+  const bool sealed = has_seals(*writer);
   if (sealed && !has_key) refuse("integrity.key is missing");
   if (!has_key) {
     const auto key = make_seal_key(key_file);
@@ -173,14 +168,16 @@ void Database::translate(const SQLite::Exception& error) {
 
 void Database::perform(const Change& change) {
   if (!healthy()) throw Error("storage", "the database is damaged: nothing is written");
-  Pending pending{&change, nullptr};
-  std::unique_lock lock(queue_mutex);
-  if (stopping) throw Error("draining", "the server is stopping");
-  queue.push_back(&pending);
+  const auto pending = std::make_shared<Pending>();
+  pending->change = &change;
+  {
+    const std::lock_guard lock(queue_mutex);
+    if (stopping) throw Error("draining", "the server is stopping");
+    queue.push_back(pending);
+  }
   queue_changed.notify_one();
-  batch_over.wait(lock, [&] { return pending.over; });
-  lock.unlock();
-  if (pending.failure) guarded([&] { std::rethrow_exception(pending.failure); });
+  pending->over.acquire();
+  if (pending->failure) guarded([&] { std::rethrow_exception(pending->failure); });
 }
 
 void Database::run_writer() {
@@ -199,7 +196,7 @@ void Database::run_writer() {
       continue;
     }
     if (queue.empty()) return;  // stopping, and everything accepted is written
-    std::vector<Pending*> batch;
+    Batch batch;
     while (!queue.empty() && batch.size() < largest_batch) {
       batch.push_back(queue.front());
       queue.pop_front();
@@ -207,55 +204,54 @@ void Database::run_writer() {
     lock.unlock();
     run_batch(batch);
     if (purge_wanted) clear_log();
+    for (const auto& pending : batch) pending->over.release();
     lock.lock();
-    for (auto* pending : batch) pending->over = true;
-    batch_over.notify_all();
   }
 }
 
-void Database::run_batch(const std::vector<Pending*>& batch) {
+void Database::run_batch(const Batch& batch) {
   try {
     log_rest();
     SQLite::Transaction transaction(*writer, SQLite::TransactionBehavior::IMMEDIATE);
-    touched.clear();
-    for (auto* pending : batch) {
-      const auto before = touched;
+    RowSeals changed;
+    for (const auto& pending : batch) {
+      touched.clear();
       try {
-        SQLite::Savepoint savepoint(*writer, "change");
+        Savepoint savepoint(*writer);
         (*pending->change)(*writer);
         savepoint.release();
+        changed.merge(touched);
       } catch (...) {
         // SQLite gives the whole transaction up on a full disk: nobody's change stands then.
         if (sqlite3_get_autocommit(writer->getHandle()) != 0) throw;
         pending->failure = std::current_exception();
-        touched = before;
       }
     }
     auto rows = unlogged;
-    if (!touched.empty()) rows = enter_ledger();
+    if (!changed.empty()) rows = enter_ledger(changed);
     transaction.commit();
-    if (!touched.empty()) ++commits;
+    if (!changed.empty()) ++commits;
     unlogged = std::move(rows);
     log_rest();
   } catch (...) {
-    for (auto* pending : batch)
+    for (const auto& pending : batch)
       if (!pending->failure) pending->failure = std::current_exception();
   }
 }
 
-RowSeals Database::enter_ledger() {
+RowSeals Database::enter_ledger(const RowSeals& changed) {
   auto rows = unlogged;
-  for (const auto& [name, ignored] : touched) {
-    SQLite::Statement query(*writer, "SELECT seal FROM main." + name.first + " WHERE rowid = ?");
-    query.bind(1, name.second);
-    rows[name] = query.executeStep() ? query.getColumn(0).getString() : "";
+  for (const auto& [name, ignored] : changed) {
+    auto seal = writer->query("SELECT seal FROM main." + name.first + " WHERE rowid = ?");
+    seal->bind(1, name.second);
+    rows[name] = seal->executeStep() ? seal->getColumn(0).getString() : "";
   }
-  SQLite::Statement update(*writer,
-                           "UPDATE ledger SET commits = ?, logged = ?, unlogged = ? WHERE id = 1");
-  update.bind(1, static_cast<std::int64_t>(commits + 1));
-  update.bind(2, static_cast<std::int64_t>(logged));
-  update.bind(3, text_of(rows));
-  update.exec();
+  auto update =
+      writer->query("UPDATE ledger SET commits = ?, logged = ?, unlogged = ? WHERE id = 1");
+  update->bind(1, static_cast<std::int64_t>(commits + 1));
+  update->bind(2, static_cast<std::int64_t>(logged));
+  update->bind(3, text_of(rows));
+  update->exec();
   return rows;
 }
 
@@ -326,24 +322,34 @@ std::uint64_t Database::log_bytes() const {
 
 Database::Lease::Lease(Database& owner_) : owner(owner_) {
   {
-    std::lock_guard lock(owner.readers_mutex);
+    std::unique_lock lock(owner.readers_mutex);
+    owner.reader_returned.wait(
+        lock, [&] { return !owner.readers.empty() || owner.reader_count < most_readers; });
     if (!owner.readers.empty()) {
       connection = std::move(owner.readers.back());
       owner.readers.pop_back();
+      return;
     }
+    ++owner.reader_count;
   }
-  if (!connection)
+  try {
     owner.guarded([&] {
       connection =
-          std::make_unique<SQLite::Database>(owner.path.string(), SQLite::OPEN_READONLY, busy_ms);
+          std::make_unique<Connection>(owner.path.string(), SQLite::OPEN_READONLY, busy_ms);
       owner.prepare(*connection);
     });
+  } catch (...) {
+    const std::lock_guard lock(owner.readers_mutex);
+    --owner.reader_count;
+    owner.reader_returned.notify_one();
+    throw;
+  }
 }
 
 Database::Lease::~Lease() {
-  constexpr std::size_t kept = 16;
-  std::lock_guard lock(owner.readers_mutex);
-  if (owner.readers.size() < kept) owner.readers.push_back(std::move(connection));
+  const std::lock_guard lock(owner.readers_mutex);
+  owner.readers.push_back(std::move(connection));
+  owner.reader_returned.notify_one();
 }
 
 }  // namespace penumbra::server::storage

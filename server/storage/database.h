@@ -1,8 +1,5 @@
 #pragma once
 
-#include <SQLiteCpp/SQLiteCpp.h>
-#include <SQLiteCpp/Savepoint.h>
-
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -13,11 +10,11 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
+#include <semaphore>
 #include <thread>
 #include <vector>
 
-#include "renderer/embedded_file.h"
+#include "server/storage/connection.h"
 #include "server/storage/examination.h"
 #include "server/storage/journal.h"
 #include "server/storage/seals.h"
@@ -45,21 +42,22 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Runs `work(SQLite::Database&)` in a transaction and answers what it returns; rolls its changes
+  /// Runs `work(Connection&)` in a transaction and answers what it returns; rolls its changes
   /// back where it throws.
   template <class Work>
   auto write(Work work) {
-    using Result = decltype(work(std::declval<SQLite::Database&>()));
+    using Result = decltype(work(std::declval<Connection&>()));
     if constexpr (std::is_void_v<Result>) {
-      perform([&](SQLite::Database& connection) { work(connection); });
+      perform([&](Connection& connection) { work(connection); });
     } else {
       std::optional<Result> result;
-      perform([&](SQLite::Database& connection) { result.emplace(work(connection)); });
+      perform([&](Connection& connection) { result.emplace(work(connection)); });
       return std::move(*result);
     }
   }
 
-  /// Runs `work(SQLite::Database&)` on a read-only connection, in a snapshot.
+  /// Runs `work(Connection&)` on a read-only connection, in a snapshot. There are a few connections
+  /// (`most_readers`): `work` must not read in turn.
   template <class Work>
   auto read(Work work) {
     Lease lease(*this);
@@ -91,30 +89,32 @@ class Database {
   std::uint64_t log_bytes() const;
 
  private:
-  using Change = std::function<void(SQLite::Database&)>;
+  using Change = std::function<void(Connection&)>;
+  /// A change that waits. Shared, since the writer still touches `over` when its caller goes on.
   struct Pending {
-    const Change* change;
+    const Change* change = nullptr;
     std::exception_ptr failure;
-    bool over = false;
+    std::binary_semaphore over{0};
   };
+  using Batch = std::vector<std::shared_ptr<Pending>>;
   /// Takes a reading connection and puts it back.
   struct Lease {
     explicit Lease(Database& owner);
     ~Lease();
     Database& owner;
-    std::unique_ptr<SQLite::Database> connection;
+    std::unique_ptr<Connection> connection;
   };
 
   void open_writer();
   bool holds_a_study() const;
   [[noreturn]] void refuse(const std::string& why);
   void check_rows();
-  RowSeals enter_ledger();
+  RowSeals enter_ledger(const RowSeals& changed);
   void log_rest();
   void prepare(SQLite::Database& connection) const;
   void perform(const Change& change);
   void run_writer();
-  void run_batch(const std::vector<Pending*>& batch);
+  void run_batch(const Batch& batch);
   [[noreturn]] void translate(const SQLite::Exception& error);
   void clear_log();
 
@@ -131,7 +131,7 @@ class Database {
   std::optional<Seals> seals;
   std::optional<Journal> journal;
   RowChanged note_row;        ///< of the triggers
-  RowSeals touched;           ///< rows of the batch at hand
+  RowSeals touched;           ///< rows of the change at hand
   RowSeals unlogged;          ///< rows of commits that the journal lacks
   std::uint64_t commits = 0;  ///< as the ledger has it
   std::uint64_t logged = 0;   ///< the journal's last commit
@@ -140,19 +140,17 @@ class Database {
   std::atomic<bool> damaged{false};
   std::atomic<std::uint64_t> failure_count{0};
   std::atomic<bool> purge_wanted{false};
-  std::unique_ptr<SQLite::Database> writer;  ///< used by the writer's thread only
+  std::unique_ptr<Connection> writer;  ///< used by the writer's thread only
   std::chrono::steady_clock::time_point next_purge{};
   std::mutex queue_mutex;
   std::condition_variable queue_changed;
-  std::condition_variable batch_over;
-  std::deque<Pending*> queue;
+  std::deque<std::shared_ptr<Pending>> queue;
   bool stopping = false;
   std::mutex readers_mutex;
-  std::vector<std::unique_ptr<SQLite::Database>> readers;  ///< idle ones
+  std::condition_variable reader_returned;
+  std::vector<std::unique_ptr<Connection>> readers;  ///< idle ones
+  int reader_count = 0;                              ///< idle ones and those in use
   std::thread thread;
 };
-
-/// Numbered SQL files of schema/migrations, compiled in.
-std::span<const EmbeddedFile> migrations();
 
 }  // namespace penumbra::server::storage

@@ -40,15 +40,15 @@ std::optional<ParticipantRecord> participant_of_row(Database& database, SQLite::
   return record;
 }
 
-std::optional<ParticipantRecord> find_where(Database& database, SQLite::Database& connection,
+std::optional<ParticipantRecord> find_where(Database& database, Connection& connection,
                                             const std::string& condition, const std::string& a,
                                             const std::string& b) {
-  SQLite::Statement query(connection, std::string("SELECT ") + participant_columns +
-                                          " FROM checked_participants WHERE " + condition);
-  query.bind(1, a);
-  if (!b.empty()) query.bind(2, b);
-  if (!query.executeStep()) return std::nullopt;
-  auto record = participant_of_row(database, query);
+  auto query = connection.query(std::string("SELECT ") + participant_columns +
+                                " FROM checked_participants WHERE " + condition);
+  query->bind(1, a);
+  if (!b.empty()) query->bind(2, b);
+  if (!query->executeStep()) return std::nullopt;
+  auto record = participant_of_row(database, *query);
   if (!record) throw damaged_row();
   return record;
 }

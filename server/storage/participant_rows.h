@@ -16,7 +16,7 @@ std::optional<ParticipantRecord> participant_of_row(Database& database, SQLite::
 
 /// The person for whom `condition` with its one or two values holds. Throws Error `storage` where
 /// that row is damaged.
-std::optional<ParticipantRecord> find_where(Database& database, SQLite::Database& connection,
+std::optional<ParticipantRecord> find_where(Database& database, Connection& connection,
                                             const std::string& condition, const std::string& a,
                                             const std::string& b = {});
 

@@ -21,8 +21,8 @@ std::size_t next_place(SQLite::Database& connection, const ParticipantRecord& fr
       "w.place IS NOT NULL AND NOT EXISTS (SELECT 1 FROM participants AS p WHERE p.study = ?1 AND "
       "p.version = ?2 AND p.place = w.place AND p.holds_place = 1 AND p.test = 0) "
       "UNION ALL "
-      "SELECT COALESCE((SELECT MAX(place) + 1 FROM participants WHERE study = ?1 AND version = ?2 "
-      "AND holds_place = 1 AND test = 0), 0))");
+      "SELECT COALESCE((SELECT place + 1 FROM participants WHERE study = ?1 AND version = ?2 "
+      "AND holds_place = 1 AND test = 0 ORDER BY place DESC LIMIT 1), 0))");
   query.bind(1, fresh.study);
   query.bind(2, fresh.version);
   query.bind(3, abandoned_before);
@@ -64,7 +64,7 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
   const auto place = next_place(connection, fresh, abandoned_before);
   SQLite::Statement release(connection,
                             "UPDATE participants SET holds_place = 0 WHERE study = ? AND "
-                            "version = ? AND place = ? AND test = 0");
+                            "version = ? AND place = ? AND test = 0 AND holds_place = 1");
   release.bind(1, fresh.study);
   release.bind(2, fresh.version);
   release.bind(3, static_cast<std::int64_t>(place));
@@ -115,52 +115,52 @@ std::vector<Exclusion> exclusions_of(Database& database, SQLite::Database& conne
 
 /// Throws where the person may not answer any more. Who was amid a version when the next one opened
 /// may finish it.
-void check_answerable(SQLite::Database& connection, const ParticipantRecord& participant) {
-  SQLite::Statement query(
-      connection,
+void check_answerable(Connection& connection, const ParticipantRecord& participant) {
+  auto query = connection.query(
       "SELECT p.completed_at IS NOT NULL, s.status, EXISTS (SELECT 1 FROM studies AS n "
       "WHERE n.study = s.study AND n.version > s.version AND n.status = 'open' AND "
       "n.opened_at = s.closed_at) "
       "FROM participants AS p JOIN studies AS s ON s.study = p.study AND s.version = p.version "
       "WHERE p.id = ?");
-  query.bind(1, participant.key);
-  if (!query.executeStep()) throw not_found("participant", "there is nothing at this address");
-  if (query.getColumn(0).getInt() != 0)
+  query->bind(1, participant.key);
+  if (!query->executeStep()) throw not_found("participant", "there is nothing at this address");
+  if (query->getColumn(0).getInt() != 0)
     throw Error("conflict", "the study was completed already", "participant");
-  const bool superseded = query.getColumn(2).getInt() != 0;
-  if (query.getColumn(1).getString() != "open" && !superseded)
+  const bool superseded = query->getColumn(2).getInt() != 0;
+  if (query->getColumn(1).getString() != "open" && !superseded)
     throw Error("conflict", "the study is closed", "study");
 }
 
 /// Takes the mark from the page's current answer and answers its id, empty where there is none.
-std::string retire_current(SQLite::Database& connection, std::int64_t participant, int page) {
-  SQLite::Statement query(connection,
-                          "SELECT answer_id FROM answers WHERE participant = ? AND page = ? AND "
-                          "is_current = 1");
-  query.bind(1, participant);
-  query.bind(2, page);
-  const std::string replaced = query.executeStep() ? query.getColumn(0).getString() : "";
-  SQLite::Statement retire(connection,
-                           "UPDATE answers SET is_current = 0 WHERE participant = ? AND page = ?");
-  retire.bind(1, participant);
-  retire.bind(2, page);
-  retire.exec();
+std::string retire_current(Connection& connection, std::int64_t participant, int page) {
+  auto query = connection.query(
+      "SELECT answer_id FROM answers WHERE participant = ? AND page = ? AND "
+      "is_current = 1");
+  query->bind(1, participant);
+  query->bind(2, page);
+  const std::string replaced = query->executeStep() ? query->getColumn(0).getString() : "";
+  auto retire = connection.query(
+      "UPDATE answers SET is_current = 0 WHERE participant = ? AND page = ? "
+      "AND is_current = 1");
+  retire->bind(1, participant);
+  retire->bind(2, page);
+  retire->exec();
   return replaced;
 }
 
-int pages_answered(SQLite::Database& connection, std::int64_t participant) {
-  SQLite::Statement query(connection,
-                          "SELECT COUNT(*) FROM answers WHERE participant = ? AND is_current = 1");
-  query.bind(1, participant);
-  query.executeStep();
-  return query.getColumn(0).getInt();
+int pages_answered(Connection& connection, std::int64_t participant) {
+  auto query =
+      connection.query("SELECT COUNT(*) FROM answers WHERE participant = ? AND is_current = 1");
+  query->bind(1, participant);
+  query->executeStep();
+  return query->getColumn(0).getInt();
 }
 
 }  // namespace
 
 ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint32_t quota,
                                       const std::string& abandoned_before) {
-  return database.write([&](SQLite::Database& connection) {
+  return database.write([&](Connection& connection) {
     if (const auto known = find_where(database, connection, "study = ? AND enrolment_id = ?",
                                       fresh.study, fresh.enrolment_id))
       return *known;
@@ -194,59 +194,58 @@ ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint3
 }
 
 std::optional<ParticipantRecord> Participants::find(const std::string& token) {
-  return database.read([&](SQLite::Database& connection) {
+  return database.read([&](Connection& connection) {
     return find_where(database, connection, "token_hash = ?", sha256(token));
   });
 }
 
 std::vector<AnswerRecord> Participants::answers(std::int64_t participant) {
-  return database.read([&](SQLite::Database& connection) {
-    return answers_of(database, connection, participant, true);
-  });
+  return database.read(
+      [&](Connection& connection) { return answers_of(database, connection, participant, true); });
 }
 
 nlohmann::json Participants::answer(
     const ParticipantRecord& participant, const AnswerRecord& fresh,
     const std::function<bool(const nlohmann::json&)>& same,
     const std::function<nlohmann::json(const std::string&, int)>& make_reply) {
-  return database.write([&](SQLite::Database& connection) {
-    SQLite::Statement known(connection,
-                            "SELECT page, body, reply, intact FROM checked_answers "
-                            "WHERE participant = ? AND answer_id = ?");
-    known.bind(1, participant.key);
-    known.bind(2, fresh.answer_id);
-    if (known.executeStep()) {
-      if (known.getColumn(3).getInt() == 0) throw damaged_row();
-      const bool repeated = known.getColumn(0).getInt() == fresh.page &&
-                            same(nlohmann::json::parse(known.getColumn(1).getString()));
+  return database.write([&](Connection& connection) {
+    auto known = connection.query(
+        "SELECT page, body, reply, intact FROM checked_answers "
+        "WHERE participant = ? AND answer_id = ?");
+    known->bind(1, participant.key);
+    known->bind(2, fresh.answer_id);
+    if (known->executeStep()) {
+      if (known->getColumn(3).getInt() == 0) throw damaged_row();
+      const bool repeated = known->getColumn(0).getInt() == fresh.page &&
+                            same(nlohmann::json::parse(known->getColumn(1).getString()));
       if (!repeated)
         throw Error("conflict", "another answer was stored under this id", "answer_id");
-      return nlohmann::json::parse(known.getColumn(2).getString());
+      return nlohmann::json::parse(known->getColumn(2).getString());
     }
     check_answerable(connection, participant);
     const auto replaced = retire_current(connection, participant.key, fresh.page);
     const auto reply = make_reply(replaced, pages_answered(connection, participant.key) + 1);
-    SQLite::Statement insert(connection,
-                             "INSERT INTO answers (participant, page, answer_id, body, reply, "
-                             "answered_at, is_current) VALUES (?, ?, ?, ?, ?, ?, 1)");
-    insert.bind(1, participant.key);
-    insert.bind(2, fresh.page);
-    insert.bind(3, fresh.answer_id);
-    insert.bind(4, fresh.body.dump());
-    insert.bind(5, reply.dump());
-    insert.bind(6, fresh.answered_at);
-    insert.exec();
-    SQLite::Statement seen(connection, "UPDATE participants SET seen_at = ? WHERE id = ?");
-    seen.bind(1, fresh.answered_at);
-    seen.bind(2, participant.key);
-    seen.exec();
+    auto insert = connection.query(
+        "INSERT INTO answers (participant, page, answer_id, body, reply, "
+        "answered_at, is_current) VALUES (?, ?, ?, ?, ?, ?, 1)");
+    insert->bind(1, participant.key);
+    insert->bind(2, fresh.page);
+    insert->bind(3, fresh.answer_id);
+    insert->bind(4, fresh.body.dump());
+    insert->bind(5, reply.dump());
+    insert->bind(6, fresh.answered_at);
+    insert->exec();
+    auto seen = connection.query("UPDATE participants SET seen_at = ? WHERE id = ?");
+    seen->bind(1, fresh.answered_at);
+    seen->bind(2, participant.key);
+    seen->exec();
     return reply;
   });
 }
 
 void Participants::complete(const ParticipantRecord& participant, int pages,
                             const nlohmann::json& details, const std::string& now) {
-  database.write([&](SQLite::Database& connection) {
+  database.write([&](Connection& connection) {
     SQLite::Statement state(connection,
                             "SELECT completed_at IS NOT NULL FROM participants WHERE id = ?");
     state.bind(1, participant.key);
@@ -270,7 +269,7 @@ void Participants::complete(const ParticipantRecord& participant, int pages,
 }
 
 bool Participants::withdraw(const std::string& code, const std::string& now) {
-  return database.write([&](SQLite::Database& connection) {
+  return database.write([&](Connection& connection) {
     const auto person = find_where(database, connection, "withdrawal_code = ?", code);
     if (!person) return false;
     SQLite::Statement remove(connection, "DELETE FROM participants WHERE id = ?");
@@ -292,7 +291,7 @@ bool Participants::withdraw(const std::string& code, const std::string& now) {
 
 bool Participants::exclude(const std::string& study, const std::string& pseudonym,
                            const Exclusion& decision) {
-  return database.write([&](SQLite::Database& connection) {
+  return database.write([&](Connection& connection) {
     const auto person =
         find_where(database, connection, "study = ? AND pseudonym = ?", study, pseudonym);
     if (!person) return false;
@@ -314,7 +313,7 @@ void Participants::each(const std::string& study, int version,
   std::int64_t last = 0;
   while (true) {
     int seen = 0;
-    const auto people = database.read([&](SQLite::Database& connection) {
+    const auto people = database.read([&](Connection& connection) {
       SQLite::Statement query(connection,
                               std::string("SELECT ") + participant_columns +
                                   " FROM checked_participants WHERE study = ? AND version = ? "
@@ -343,7 +342,7 @@ void Participants::each(const std::string& study, int version,
 }
 
 std::vector<Participants::Progress> Participants::progress(const std::string& study, int version) {
-  return database.read([&](SQLite::Database& connection) {
+  return database.read([&](Connection& connection) {
     SQLite::Statement query(connection,
                             "SELECT p.id, p.place, a.page FROM participants AS p JOIN answers AS a "
                             "ON a.participant = p.id WHERE p.study = ? AND p.version = ? AND "

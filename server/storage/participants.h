@@ -49,7 +49,7 @@ struct ParticipantData {
   ParticipantRecord participant;
   std::vector<AnswerRecord> answers;   ///< current ones, by page
   std::vector<AnswerRecord> replaced;  ///< earlier ones, by page, oldest first
-  std::vector<Exclusion> exclusions;  ///< in order; the last one counts
+  std::vector<Exclusion> exclusions;   ///< in order; the last one counts
 
   bool excluded() const { return !exclusions.empty() && exclusions.back().excluded; }
 };

@@ -4,6 +4,9 @@
 
 #include <fstream>
 #include <future>
+#include <mutex>
+#include <set>
+#include <thread>
 
 #include "renderer/error.h"
 #include "tests/storage/folder.h"
@@ -157,6 +160,33 @@ TEST_F(ADatabase, RefusesToWriteWhenItIsDamaged) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code, "storage");
   }
+}
+
+TEST_F(ADatabase, LendsAFewConnectionsToManyReaders) {
+  Database database(file);
+  std::mutex mutex;
+  std::set<sqlite3*> connections;
+  std::vector<std::future<void>> readers;
+  for (int i = 0; i < 64; ++i)
+    readers.push_back(std::async(std::launch::async, [&] {
+      for (int j = 0; j < 5; ++j)
+        database.read([&](SQLite::Database& connection) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          const std::lock_guard lock(mutex);
+          connections.insert(connection.getHandle());
+          return 0;
+        });
+    }));
+  for (auto& reader : readers) reader.get();
+  EXPECT_LE(connections.size(), 16u);
+}
+
+TEST_F(ADatabase, LendsAConnectionAgainWhenItsReaderFailed) {
+  Database database(file);
+  for (int i = 0; i < 40; ++i)
+    EXPECT_THROW(database.read([](SQLite::Database&) -> int { throw Error("conflict", "no"); }),
+                 Error);
+  EXPECT_EQ(number(database, "SELECT 7"), 7);
 }
 
 TEST_F(ADatabase, IsNotTouchedByAnOlderProgram) {

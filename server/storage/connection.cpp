@@ -1,0 +1,32 @@
+#include "server/storage/connection.h"
+
+#include <stdexcept>
+
+namespace penumbra::server::storage {
+
+Connection::Query::Query(Prepared& prepared_) : prepared(prepared_) {
+  if (prepared.in_use) throw std::logic_error("a kept statement is in use already");
+  prepared.in_use = true;
+}
+
+Connection::Query::~Query() {
+  // Its last failure was thrown when it happened; here it is only reset.
+  prepared.statement->tryReset();
+  prepared.statement->clearBindings();
+  prepared.in_use = false;
+}
+
+Connection::Query Connection::query(const std::string& text) {
+  auto& prepared = statements[text];
+  if (!prepared.statement) {
+    try {
+      prepared.statement = std::make_unique<SQLite::Statement>(*this, text);
+    } catch (...) {
+      statements.erase(text);
+      throw;
+    }
+  }
+  return Query(prepared);
+}
+
+}  // namespace penumbra::server::storage
