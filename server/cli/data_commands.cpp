@@ -1,4 +1,4 @@
-// What is done with a data folder as a whole: backup, restore, verify, export.
+// What is done with a data folder as a whole: backup, restore, verify, repair, export.
 #include <httplib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,10 +8,14 @@
 
 #include "renderer/error.h"
 #include "server/cli/session.h"
+#include "server/http/frozen_pictures.h"
 #include "server/http/serve.h"
 #include "server/jobs/render_service.h"
 #include "server/storage/backup.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/folder_files.h"
+#include "server/storage/repair.h"
+#include "server/storage/studies.h"
 
 namespace penumbra::server::cli {
 namespace {
@@ -64,6 +68,48 @@ int verify(const Session& session, const fs::path& data) {
   for (const auto& line : wrong) text += line + "\n";
   session.print({{"sound", wrong.empty()}, {"damage", wrong}},
                 wrong.empty() ? data.string() + " is sound\n" : text);
+  return wrong.empty() ? 0 : 1;
+}
+
+/// Pictures of studies whose file is gone or altered: drawn again from their renders, where those
+/// are known and give the same pixels. verify names the others.
+void redraw(const fs::path& data, const std::vector<std::string>& digests) {
+  const storage::DataFolder lock(data);
+  storage::Database database(data / storage::database_name);
+  storage::Studies studies(database);
+  RenderServiceOptions options;
+  options.data = data;
+  const auto renders = make_render_service(options);
+  http::FrozenPictures pictures(studies, *renders, data / storage::pictures_name);
+  for (const auto& digest : digests) {
+    try {
+      pictures.read(digest);
+    } catch (const Error& error) {
+      std::cerr << digest << ": " << error.what() << '\n';
+    }
+  }
+}
+
+int repair(const Session& session, const fs::path& data) {
+  http::log_to_standard_error();
+  const auto repair = storage::repair_folder(data);
+  if (!repair.pictures.empty()) redraw(data, repair.pictures);
+  const auto wrong = repair.found.empty() ? repair.found : storage::verify_folder(data);
+  std::string text;
+  for (const auto& line : repair.aside) text += line + "\n";
+  if (repair.found.empty())
+    text = data.string() + " is sound: nothing was done\n";
+  else
+    text += std::to_string(repair.kept) + " rows kept, " + std::to_string(repair.aside.size()) +
+            " told of; as it was: " + repair.folder.string() + "\n";
+  for (const auto& line : wrong) text += "still wrong: " + line + "\n";
+  session.print({{"sound", wrong.empty()},
+                 {"found", repair.found},
+                 {"rows_kept", repair.kept},
+                 {"rows", repair.aside},
+                 {"folder", repair.folder.string()},
+                 {"damage", wrong}},
+                text);
   return wrong.empty() ? 0 : 1;
 }
 
@@ -142,6 +188,9 @@ void add_data_commands(CLI::App& app, Session& session) {
   add(
       "verify", "Say whether a data folder or a backup (--data FILE) is sound",
       [&session](const Options& o) { return verify(session, o.data); }, [](CLI::App&, Options&) {});
+  add(
+      "repair", "Make a damaged data folder sound; nothing is deleted",
+      [&session](const Options& o) { return repair(session, o.data); }, [](CLI::App&, Options&) {});
   add(
       "export", "Write the archive of a study's answers",
       [&session](const Options& o) { return export_study(session, o.study, o.data, o.out); },

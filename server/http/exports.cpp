@@ -6,6 +6,7 @@
 #include "server/http/service.h"
 #include "server/http/studies.h"
 #include "server/http/study_export.h"
+#include "server/storage/folder_files.h"
 #include "study/statistics/report.h"
 
 namespace penumbra::server::http {
@@ -20,7 +21,7 @@ StudyExport export_at(Call& call) {
 }
 
 std::filesystem::path work_folder(const Call& call) {
-  return call.service.folder.path() / "tmp";
+  return call.service.folder.path() / storage::exports_name;
 }
 
 void tell_damage(Call& call) {

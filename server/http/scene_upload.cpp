@@ -16,6 +16,7 @@
 #include "server/http/secrets.h"
 #include "server/jobs/request_scene.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/folder_files.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -30,7 +31,7 @@ constexpr zip_uint64_t small_file = 1 << 20;  // below this the ratio does no ha
 /// A folder that is gone at the end of its block.
 struct Staging {
   fs::path path;
-  explicit Staging(const fs::path& data) : path(data / "incoming" / random_uuid()) {
+  explicit Staging(const fs::path& data) : path(data / storage::incoming_name / random_uuid()) {
     fs::create_directories(path);
   }
   ~Staging() {
@@ -259,12 +260,6 @@ bool remove_scene(const fs::path& data, const std::string& id) {
   const auto places = places_of(data, id);
   for (const auto& place : places) fs::remove_all(place);
   return !places.empty();
-}
-
-void sweep_uploads(const fs::path& data) {
-  std::error_code error;
-  for (const auto& left_over : fs::directory_iterator(data / "incoming", error))
-    fs::remove_all(left_over.path(), error);
 }
 
 }  // namespace penumbra::server::http

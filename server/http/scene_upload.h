@@ -23,9 +23,6 @@ nlohmann::json store_scene(const std::filesystem::path& data, const std::string&
 /// False where there is no such scene.
 bool remove_scene(const std::filesystem::path& data, const std::string& id);
 
-/// Removes what uploads left that a stop or a crash interrupted. Called before any begins.
-void sweep_uploads(const std::filesystem::path& data);
-
 /// Unpacks a zip of regular files into a folder. Throws unreadable for names that lead outside, for
 /// links, names that come twice, archives inside, more than 1000 files, over 512 MiB, or over 200
 /// bytes from one.

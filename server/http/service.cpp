@@ -4,8 +4,8 @@
 
 #include "server/http/clock.h"
 #include "server/http/documents.h"
-#include "server/http/scene_upload.h"
 #include "server/http/secrets.h"
+#include "server/storage/folder_files.h"
 #include "study/study.h"
 
 namespace penumbra::server::http {
@@ -13,19 +13,19 @@ namespace penumbra::server::http {
 Service::Service(const ServeOptions& options_, const MakeRenderService& make_renders)
     : options(options_),
       folder(options.data),
-      token(researcher_token(options.token_file.empty() ? folder.path() / "researcher.token"
+      token(researcher_token(options.token_file.empty() ? folder.path() / storage::token_name
                                                         : options.token_file)),
-      database(folder.path() / "penumbra.sqlite"),
+      database(folder.path() / storage::database_name),
       studies(database),
       participants(database),
       renders(make_renders()),
       scene_reader({options.worker_command, 0, options.import_deadline_s}),
       frozen(studies),
-      pictures(studies, *renders, folder.path() / "pictures"),
+      pictures(studies, *renders, folder.path() / storage::pictures_name),
       publisher(studies, *renders, pictures),
       sweeps(database, *renders),
       health(folder, database, pictures) {
-  sweep_uploads(folder.path());
+  storage::sweep_leftovers(folder.path());
 }
 
 std::string Service::not_ready() {

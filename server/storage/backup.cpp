@@ -16,6 +16,7 @@
 #include "server/jobs/durable_file.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/examination.h"
+#include "server/storage/folder_files.h"
 #include "server/storage/seals.h"
 
 namespace penumbra::server::storage {
@@ -24,9 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* database_name = "penumbra.sqlite";
-constexpr const char* key_name = "integrity.key";
-constexpr const char* journal_name = "answers.journal";
 constexpr const char* manifest_name = "manifest.json";
 constexpr int busy_ms = 10000;
 
@@ -98,7 +96,7 @@ void check_database(const fs::path& data, Owner owner, std::vector<std::string>&
   for (int again = 0; again < 3 && !rows.empty() && owner == Owner::another; ++again)
     rows = check_rows(connection, journal, owner);
   wrong.insert(wrong.end(), rows.begin(), rows.end());
-  const auto pictures = check_pictures(connection, data / "pictures");
+  const auto pictures = check_pictures(connection, data / pictures_name);
   wrong.insert(wrong.end(), pictures.begin(), pictures.end());
 }
 
@@ -167,16 +165,6 @@ void make_folders(const fs::path& root, const fs::path& inner) {
   for (const auto& part : inner) make_private_folder(at /= part);
 }
 
-/// A folder that is removed at the end.
-struct PassingFolder {
-  explicit PassingFolder(fs::path path_) : path(std::move(path_)) { make_private_folder(path); }
-  ~PassingFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  fs::path path;
-};
-
 }  // namespace
 
 std::vector<std::string> copy_folder(const fs::path& data, const fs::path& copy) {
@@ -189,9 +177,9 @@ std::vector<std::string> copy_folder(const fs::path& data, const fs::path& copy)
     SQLite::Database target((copy / database_name).string(), SQLite::OPEN_READWRITE, busy_ms);
     SQLite::Backup(target, source).executeStep(-1);
   }
-  for (const char* name : {key_name, "researcher.token"})
+  for (const char* name : {key_name, token_name})
     if (const auto bytes = read_whole(data / name)) write_file_durably(copy / name, *bytes);
-  copy_files(data / "pictures", copy / "pictures");
+  copy_files(data / pictures_name, copy / pictures_name);
   copy_files(data / "scenes", copy / "scenes");
   if (const auto key = read_whole(data / key_name)) {
     // The journal up to the copy's last commit: the original may have gone on since.
@@ -255,8 +243,7 @@ std::vector<std::string> verify_folder(const fs::path& data) {
   const Ownership ownership(data);
   std::vector<std::string> wrong;
   check_permissions(data, wrong);
-  for (const char* name : {database_name, key_name, journal_name, "researcher.token", "pictures"})
-    check_permissions(data / name, wrong);
+  for (const char* name : secret_names) check_permissions(data / name, wrong);
   try {
     check_database(data, ownership.owner(), wrong);
   } catch (const std::exception& error) {

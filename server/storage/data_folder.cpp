@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "renderer/error.h"
+#include "server/storage/folder_files.h"
 
 namespace penumbra::server::storage {
 namespace {
@@ -67,6 +68,14 @@ void sweep_unfinished(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
     if (entry.path().filename().string().find(unfinished) != std::string::npos)
       std::filesystem::remove(entry.path(), failure);
+}
+
+void sweep_leftovers(const std::filesystem::path& data) {
+  sweep_unfinished(data);
+  std::error_code failure;
+  for (const char* name : {incoming_name, exports_name})
+    for (const auto& entry : std::filesystem::directory_iterator(data / name, failure))
+      std::filesystem::remove_all(entry.path(), failure);
 }
 
 void write_file_durably(const std::filesystem::path& file, const std::string& bytes,

@@ -21,11 +21,12 @@ void read_ledger(SQLite::Database& connection, const Journal& journal, Owner own
   auto& state = found.journal;
   if (!state.exists) return tell("its journal is missing");
   if (state.damaged) return tell("its journal is damaged");
+  found.journal_whole = state.commit >= logged;
   if (state.commit > found.commits)
     return tell("the database lacks the last " + std::to_string(state.commit - found.commits) +
                 " commits that were acknowledged");
   if (state.commit == found.commits) return;
-  if (state.commit < logged) return tell("its journal lacks commits");
+  if (!found.journal_whole) return tell("its journal lacks commits");
   for (const auto& [name, seal] : rows_of(query.getColumn(2).getString())) {
     if (seal.empty())
       state.rows.erase(name);

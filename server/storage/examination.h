@@ -31,6 +31,7 @@ struct Examination {
   std::uint64_t commits = 0;    ///< of the database
   Journal::State journal;       ///< with what the database alone knew of its last commits
   bool journal_behind = false;  ///< the journal's file lacks those
+  bool journal_whole = false;   ///< it says which rows there must be
 };
 
 /// Whether another process may be writing: its journal may be ahead of the snapshot then.
