@@ -2,6 +2,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -71,6 +72,19 @@ class WithAnswers : public Damage {
     return ready && !now.empty() && rows_of(now) != rows_of(csv);
   }
 
+  /// One digit of the first answer.
+  void alter_an_answer() {
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open((data / "penumbra.sqlite").c_str(), &database), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(database,
+                           "UPDATE answers SET body = replace(body, '\"difficulty\":3', "
+                           "'\"difficulty\":4') WHERE id = (SELECT MIN(id) FROM answers)",
+                           nullptr, nullptr, nullptr),
+              SQLITE_OK);
+    ASSERT_EQ(sqlite3_changes(database), 1);
+    sqlite3_close(database);
+  }
+
   void flip_bits(int tries, Fault& fault, unsigned seed) {
     std::mt19937 random(seed);
     int told = 0;
@@ -108,18 +122,46 @@ TEST_F(WithAnswers, LongFlippedBitsNeverPassForSound) {
 TEST_F(WithAnswers, AnAlteredAnswerIsTold) {
   Fault fault(7, "one digit of an answer changed");
   ++fault.tries;
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open((data / "penumbra.sqlite").c_str(), &database), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(database,
-                         "UPDATE answers SET body = replace(body, '\"difficulty\":3', "
-                         "'\"difficulty\":4') WHERE id = (SELECT MIN(id) FROM answers)",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  ASSERT_EQ(sqlite3_changes(database), 1);
-  sqlite3_close(database);
+  alter_an_answer();
   std::string how;
   EXPECT_FALSE(deceives(&how));
   fault.did << "the server is " << how;
+}
+
+TEST_F(WithAnswers, ARepairedFolderIsServedAgain) {
+  Fault fault(7, "an altered answer and an altered picture, repaired");
+  alter_an_answer();
+  const auto picture = fs::directory_iterator(data / "pictures")->path();
+  const auto truth = bytes_of(picture);
+  write(picture, "altered");
+  ++fault.tries;
+  {
+    ServerProcess server(options());
+    EXPECT_EQ(server.ready(), 503);
+    EXPECT_EQ(run_program({"repair", "--data", data.string()}).status, 1);  // it is in use
+  }
+  const auto repaired = run_program({"repair", "--data", data.string()});
+  EXPECT_EQ(repaired.status, 0) << repaired.output;
+  EXPECT_EQ(run_program({"verify", "--data", data.string()}).status, 0);
+  EXPECT_EQ(bytes_of(picture), truth);
+  ServerProcess server(options());
+  EXPECT_EQ(server.ready(), 200);
+  // Flags compare a person with all others: they are no part of what was answered.
+  const auto answered = [](const std::string& text) {
+    std::set<std::string> rows;
+    for (const auto& row : rows_of(text)) rows.insert(row.substr(0, row.find(",FALSE,")));
+    return rows;
+  };
+  const auto before = answered(csv);
+  const auto after = answered(export_of(server));
+  EXPECT_EQ(after.size(), before.size() - 3);  // the three pictures of one page
+  EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
+  auto client = server.client();
+  const auto person = enter(client);
+  EXPECT_EQ(client.Put(person.page(0), person.answer(0, random_uuid()).dump(), "application/json")
+                ->status,
+            200);
+  fault.did << "one answer moved aside, the others as they were, the picture drawn again";
 }
 
 TEST_F(WithAnswers, AnEmptyDatabaseBesidePicturesIsRefused) {
@@ -244,7 +286,7 @@ TEST_F(Damage, APublicationGoesOnAfterTheDiskWasFull) {
   ASSERT_LT(researcher.Post("/api/v1/studies/other/publish", "", "application/json")->status, 300);
   system.fill_disk();
   ++fault.tries;
-  std::this_thread::sleep_for(std::chrono::seconds(3));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
   system.free_disk();
   const Stopwatch watch;
   EXPECT_TRUE(eventually(

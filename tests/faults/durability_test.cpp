@@ -94,6 +94,29 @@ TEST_F(Durability, PicturesCutOffByAKillAreNeverServed) {
   fault.did << whole << " pictures whole, the others unknown, " << leftovers << " leftovers";
 }
 
+TEST_F(Durability, AnExportCutOffByAKillLeavesNothing) {
+  Fault fault(2, "kill -9 while an export is written");
+  ServerProcess server(options());
+  Answering people(server, enter_many(server, 60), 8);
+  people.finish();
+  const auto files = [&] {
+    std::error_code none;
+    return std::distance(fs::directory_iterator(data / "tmp", none), fs::directory_iterator());
+  };
+  while (fault.tries < 3) {
+    std::thread researcher([&] { server.researcher().Get(study_at + "/export.zip"); });
+    const bool seen = eventually([&] { return files() > 0; }, 5, 0);
+    server.kill();
+    researcher.join();
+    if (seen && files() > 0) ++fault.tries;
+    server.start();
+    ASSERT_TRUE(server.running()) << server.log();
+    EXPECT_EQ(files(), 0);
+  }
+  fault.lost = people.acknowledged().lost(server);
+  fault.did << "what it had written was gone after the start";
+}
+
 TEST_F(Durability, PicturesAreDeliveredThoughTheCacheIsFull) {
   Fault fault(3, "no room for the cache of pictures");
   const BrokenSystem system(folder.path / "system", data);

@@ -1,7 +1,12 @@
 // Many at once, and a server that runs out of something.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
 #include <set>
 
 #include "tests/faults/answering.h"
@@ -64,11 +69,43 @@ TEST_F(Load, AFloodOfRequestsFillsTheQueueAndNoMore) {
   fault.did << taken.size() << " taken and all drawn, " << refused << " times 503 with Retry-After";
 }
 
+/// The time below which this share of the sorted ones is.
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted.at(static_cast<std::size_t>(share * (static_cast<double>(sorted.size()) - 1.0)));
+}
+
+std::ptrdiff_t lines_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+}
+
+/// Median seconds of a file's append and sync, which a stored answer needs twice.
+double seconds_of_sync(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const std::string bytes(4096, 'x');
+  std::vector<double> times;
+  for (int i = 0; i < 31; ++i)
+    times.push_back(seconds_of([&] {
+      EXPECT_EQ(::write(descriptor, bytes.data(), bytes.size()), 4096);
+      EXPECT_EQ(::fdatasync(descriptor), 0);
+    }));
+  ::close(descriptor);
+  std::sort(times.begin(), times.end());
+  return quantile(times, 0.5);
+}
+
 TEST_F(Load, TwoHundredPeopleAnswerAtOnce) {
   Fault fault(0, "200 people answer at once");
   ServerProcess server(options());
-  Answering people(server, enter_many(server, 600), 200);
+  const double sync = seconds_of_sync(folder.path / "sync");
+  Answering one(server, enter_many(server, 50), 1);
+  one.finish();
+  const double alone = quantile(one.seconds(), 0.5);
+  const auto crowd = enter_many(server, 600);
+  const auto commits_before = lines_of(data / "answers.journal");
+  Answering people(server, crowd, 200);
   people.finish();
+  const auto commits = lines_of(data / "answers.journal") - commits_before;
   const auto times = people.seconds();
   ASSERT_EQ(times.size(), 1200u);
   fault.tries = static_cast<int>(times.size());
@@ -76,13 +113,13 @@ TEST_F(Load, TwoHundredPeopleAnswerAtOnce) {
   fault.doubled = Acknowledged::doubled(server);
   EXPECT_EQ(people.retried(), 0);
   EXPECT_EQ(fault.lost, 0);
-  const auto at = [&](double share) {
-    return static_cast<int>(1000 * times[static_cast<std::size_t>(share * (times.size() - 1.0))]);
-  };
-  // A quiet machine stays under 100 ms; this only catches what waits for seconds.
-  EXPECT_LT(at(0.99), 2000);
-  fault.did << "median " << at(0.5) << " ms, 99 of 100 under " << at(0.99)
-            << " ms, the client's threads on the same machine";
+  // Together they share commits, of which the journal has a line each. How long that takes is told
+  // and not judged: 200 threads of clients share the machine.
+  EXPECT_LT(commits, 1200 / 4);
+  fault.did << std::fixed << std::setprecision(1) << "median " << 1000 * quantile(times, 0.5)
+            << " ms, 99 of 100 under " << 1000 * quantile(times, 0.99) << " ms, " << commits
+            << " commits; a lone answer " << 1000 * alone << " ms, a sync of the disk "
+            << 1000 * sync << " ms; the client's threads on the same machine";
 }
 
 TEST_F(Load, ExhaustedDescriptorsAreSurvived) {
@@ -120,7 +157,7 @@ TEST_F(Load, ASignalUnderLoadDrains) {
     ASSERT_GT(server.worker(), 0);
     server.client().Post("/api/v1/renders", slow_render(1000 + fault.tries).dump(),
                          "application/json");
-    Answering people(server, enter_many(server, 300), 16);
+    Answering people(server, enter_many(server, 100), 16);
     eventually([&] { return people.acknowledged().size() >= 50; });
     const Stopwatch watch;
     EXPECT_EQ(server.terminate(30), 0) << server.log();
@@ -159,7 +196,7 @@ TEST_F(Load, ARenderStopsWhenItsOnlyClientIsGoneAndNotForABystander) {
   auto bystander = server.client();
   bystander.set_read_timeout(1);
   EXPECT_FALSE(bystander.Get(at + "?wait_s=30"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
   const auto status = status_of(server, at);
   EXPECT_TRUE(status == "queued" || status == "running") << status;
   // One who asked for a picture and hung up: the worker is free again.

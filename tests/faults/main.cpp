@@ -15,6 +15,17 @@ namespace {
 
 constexpr int items = 49;  ///< of the list of faults
 
+/// After the last test: no server of any of them took more memory than this.
+class MemoryBound : public testing::Environment {
+  void TearDown() override {
+    constexpr std::size_t bound = 400u << 20;
+    const auto most = penumbra::faults::most_resident();
+    std::cout << "The server's memory stayed under " << (most >> 20) + 1 << " MiB throughout."
+              << std::endl;
+    EXPECT_LT(most, bound);
+  }
+};
+
 /// Items that no test declared.
 std::set<int> missing_items() {
   std::set<int> missing;
@@ -36,6 +47,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: penumbra_test_faults [--page FILE | --minutes N] [GTEST-OPTION]...\n";
     return 2;
   }
+  testing::AddGlobalTestEnvironment(new MemoryBound);
   int status = RUN_ALL_TESTS();
   if (page.empty()) return status;
   for (const int item : missing_items()) {

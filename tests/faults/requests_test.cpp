@@ -375,7 +375,7 @@ TEST_F(Requests, SlowReadersShareOneCopyAndAreCutOff) {
     readers.push_back(descriptor);
     ++fault.tries;
   }
-  std::this_thread::sleep_for(std::chrono::seconds(2));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_LT(longest_call(*server), 2.0);
   EXPECT_LT(server->peak(), before + 20 * size);
   fault.did << "a file of " << size / 1024 << " KiB took "

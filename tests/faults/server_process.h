@@ -91,13 +91,13 @@ class ServerProcess {
   std::thread watcher_;
 };
 
-/// Calls `condition` every few milliseconds until it holds; false after `seconds`.
+/// Calls `condition` every `pause_ms` until it holds; false after `seconds`.
 template <class Condition>
-bool eventually(Condition condition, double seconds = 20) {
+bool eventually(Condition condition, double seconds = 20, int pause_ms = 10) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
   }
   return true;
 }

@@ -94,7 +94,7 @@ TEST_F(Workers, AKilledWorkerIsReplacedAndItsRenderTriedOnce) {
 
 TEST_F(Workers, AHungWorkerIsKilledAtTheDeadline) {
   Fault fault(28, "the worker hangs amid a render, and before one");
-  ServerProcess server(options({"--render-deadline", "12", "--workers", "2"}));
+  ServerProcess server(options({"--render-deadline", "6", "--workers", "2"}));
   ASSERT_TRUE(server.wait_metric("penumbra_renders_workers_alive", 2));
   EXPECT_TRUE(draws(server, 16));
   const auto stopped = server.workers();
@@ -139,7 +139,7 @@ TEST_F(Workers, AWorkerWithoutMemoryCostsOneRequest) {
 TEST_F(Workers, ACrashLoopOpensTheBreakerAndEndsByItself) {
   Fault fault(30, "every worker dies as it starts");
   ServerProcess server(options());
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(6);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(3);
   while (std::chrono::steady_clock::now() < until) {
     for (const auto worker : server.workers()) {
       ::kill(worker, SIGKILL);
@@ -151,7 +151,7 @@ TEST_F(Workers, ACrashLoopOpensTheBreakerAndEndsByItself) {
   EXPECT_LT(started, 15.0);
   const Stopwatch watch;
   EXPECT_TRUE(eventually([&] { return draws(server, 19); }, 60));
-  fault.did << started << " workers that said hello in 6 s; drawing again after "
+  fault.did << started << " workers that said hello in 3 s; drawing again after "
             << static_cast<int>(watch.seconds() * 1000) << " ms";
 }
 
@@ -211,10 +211,10 @@ TEST_F(Workers, PixelsThatAreNoNumberAreCounted) {
 
 TEST_F(Workers, AWorkerThatStopsReadingBlocksNothing) {
   Fault fault(28, "the worker stops before it reads a task of megabytes");
-  ServerProcess server(options({"--render-deadline", "12"}));
+  ServerProcess server(options({"--render-deadline", "8"}));
   // The reference is cached, so that the next task carries it.
-  json measured = {{"scene", "half-plane"}, {"technique", "none"}, {"width", 700},
-                   {"height", 700},         {"measure", true},     {"frames", 1},
+  json measured = {{"scene", "half-plane"}, {"technique", "none"}, {"width", 500},
+                   {"height", 500},         {"measure", true},     {"frames", 1},
                    {"light_samples", 4}};
   const auto first = post(server, measured);
   ASSERT_EQ(ended(server, first).value("status", ""), "done");
@@ -234,7 +234,7 @@ TEST_F(Workers, AWorkerThatStopsReadingBlocksNothing) {
   const Stopwatch end;
   EXPECT_EQ(server.terminate(60), 0);
   fault.did << "over after " << static_cast<int>(watch.seconds() * 1000)
-            << " ms at a deadline of 12 s, a stop took " << static_cast<int>(end.seconds() * 1000)
+            << " ms at a deadline of 8 s, a stop took " << static_cast<int>(end.seconds() * 1000)
             << " ms";
 }
 
