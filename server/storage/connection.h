@@ -2,7 +2,6 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -36,9 +35,6 @@ class Connection : public SQLite::Database {
 
   /// Throws std::logic_error where the same text is in use already.
   Query query(const std::string& text);
-
-  /// Statements compiled by `query` so far.
-  std::uint64_t compiled() const { return statements.size(); }
 
  private:
   std::map<std::string, Prepared> statements;

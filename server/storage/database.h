@@ -29,7 +29,7 @@ namespace penumbra::server::storage {
 /// after the commit: what it returned from is durable (WAL, synchronous=FULL).
 ///
 /// Rows carry keyed digests, and a journal beside the database knows which rows there must be
-/// (docs/decisions/0011-damage-is-seen.md). A write returns after both are on disk.
+/// (docs/decisions/0014-damage-is-seen.md). A write returns after both are on disk.
 ///
 /// Failures become penumbra::Error: `busy` (locked too long), `storage` (disk full, input/output,
 /// damage). After damage was seen, `healthy` is false and every write is refused.
