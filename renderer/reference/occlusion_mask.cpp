@@ -95,7 +95,8 @@ void OcclusionMask::trace(PrepareContext& context) {
   const bool many = context.batches > 1;
   if (!mask_) create(context, many);
   if (!many) {
-    dispatch_sets(context, "occlusion mask", "", nullptr);
+    while (!dispatch_sets(context, "occlusion mask", "", nullptr)) {
+    }
     return;
   }
   if (context.batch == 0) {
@@ -103,12 +104,14 @@ void OcclusionMask::trace(PrepareContext& context) {
     list_occluders(context);
   }
   if (occluder_limit_ > 0)
-    dispatch_sets(context, "occlusion mask", "#define OCCLUDERS_LISTED\n", &partly_lit_);
-  if (occluder_limit_ == 0 || overflowed_ > 0)
-    dispatch_sets(context, "occlusion mask",
-                  occluder_limit_ > 0 ? "#define WITH_CANDIDATES\n#define SOME_OCCLUDERS_LISTED\n"
-                                      : "#define WITH_CANDIDATES\n",
-                  &partly_lit_);
+    while (!dispatch_sets(context, "occlusion mask", "#define OCCLUDERS_LISTED\n", &partly_lit_)) {
+    }
+  if (occluder_limit_ > 0 && overflowed_ == 0) return;
+  const char* unlisted = occluder_limit_ > 0
+                             ? "#define WITH_CANDIDATES\n#define SOME_OCCLUDERS_LISTED\n"
+                             : "#define WITH_CANDIDATES\n";
+  while (!dispatch_sets(context, "occlusion mask", unlisted, &partly_lit_)) {
+  }
 }
 
 void OcclusionMask::create(PrepareContext& context, bool many) {
@@ -128,8 +131,8 @@ void OcclusionMask::create(PrepareContext& context, bool many) {
 
 /// Lists the samples that part and all of the light reaches.
 void OcclusionMask::find_samples(PrepareContext& context) {
-  std::memset(found_.mapped(), 0, found_.size());
-  dispatch_sets(context, "find occluders", "#define FIND_CANDIDATES\n", nullptr);
+  do std::memset(found_.mapped(), 0, found_.size());
+  while (!dispatch_sets(context, "find occluders", "#define FIND_CANDIDATES\n", nullptr));
   // The counts say how much the passes to come have to do.
   context.recorder.flush();
   const std::uint32_t capacity =
@@ -167,8 +170,11 @@ void OcclusionMask::list_occluders(PrepareContext& context) {
     occluders_ = {context.device, context.memory, "occluder lists", bytes,
                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
   }
-  dispatch_sets(context, "list occluders", "#define LIST_OCCLUDERS\n#define WITH_CANDIDATES\n",
-                &partly_lit_);
+  if (!dispatch_sets(context, "list occluders", "#define LIST_OCCLUDERS\n#define WITH_CANDIDATES\n",
+                     &partly_lit_)) {
+    occluder_limit_ = 0;
+    return;
+  }
   context.recorder.flush();
   overflowed_ = found(overflow_place);
 }
@@ -181,7 +187,7 @@ std::uint32_t OcclusionMask::found(std::uint32_t place) const {
 }
 
 /// Runs a variant of the program at the ranges of a list, one for each set, or at all samples.
-void OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& name,
+bool OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& name,
                                   std::string defines,
                                   const std::vector<SampleList::Range>* ranges) {
   const Intersector& intersector = Intersector::of(context.device, context.scene);
@@ -196,6 +202,17 @@ void OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& na
   if (lit_.texels) bindings.buffer("SampleBlock", lit_.texels.whole());
   if (found_) bindings.buffer("FoundBlock", found_.whole());
   if (occluders_) bindings.buffer("OccluderBlock", occluders_.whole());
+  if (may_end_early(context)) {
+    if (!faults_)
+      faults_ = {context.device,
+                 context.memory,
+                 "walk faults",
+                 2 * sizeof(std::uint32_t),
+                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                 vulkan::MemoryKind::readback};
+    std::memset(faults_.mapped(), 0, faults_.size());
+    bindings.buffer("FaultBlock", faults_.whole());
+  }
   SampleWork work;
   work.occluder_limit = occluder_limit_;
   work.overflow_place = overflow_place;
@@ -210,6 +227,26 @@ void OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& na
       if (ranges != nullptr) work.slot += (*ranges)[set].count;
     }
   });
+  return finished(context);
+}
+
+/// Whether a walk may take so many rounds that a driver ends it; otherwise the frame's own counter
+/// sees that none is.
+bool OcclusionMask::may_end_early(const PrepareContext& context) const {
+  constexpr std::uint32_t surely_finished = 8000;
+  return std::min(nodes_per_range_, Intersector::of(context.device, context.scene).node_count()) >
+         surely_finished;
+}
+
+bool OcclusionMask::finished(PrepareContext& context) {
+  if (!may_end_early(context)) return true;
+  context.recorder.flush();
+  std::uint32_t counts[2];
+  std::memcpy(counts, faults_.mapped(), sizeof(counts));
+  if (counts[1] == 0) return true;
+  nodes_per_range_ =
+      std::min(nodes_per_range_, Intersector::of(context.device, context.scene).node_count()) / 2;
+  return false;
 }
 
 /// Dispatches the bound program, several times where the hierarchy is too large for one walk.

@@ -19,7 +19,8 @@ float offset_of(const glm::vec3& position, const glm::vec3& camera_position);
 /// Receivers start offset_of their place above their facet.
 class OcclusionMask {
  public:
-  /// Nodes that one dispatch walks: far below the 65,535 rounds after which some drivers end loops.
+  /// Nodes that one dispatch walks at first: below the 65,535 rounds after which some drivers end
+  /// loops, unless most are leaves that a sample must look at. Then half as many are, and so on.
   static constexpr std::uint32_t default_range = 45000;
 
   explicit OcclusionMask(std::uint32_t nodes_per_range = default_range)
@@ -43,8 +44,12 @@ class OcclusionMask {
   void find_samples(PrepareContext& context);
   void list_occluders(PrepareContext& context);
   std::uint32_t found(std::uint32_t place) const;
-  void dispatch_sets(PrepareContext& context, const std::string& name, std::string defines,
-                     const std::vector<SampleList::Range>* ranges);
+  /// False where walks did not finish: the range is smaller then, and all is to be done again.
+  [[nodiscard]] bool dispatch_sets(PrepareContext& context, const std::string& name,
+                                   std::string defines,
+                                   const std::vector<SampleList::Range>* ranges);
+  bool may_end_early(const PrepareContext& context) const;
+  bool finished(PrepareContext& context);
   void walk(const PrepareContext& context, vulkan::Commands& commands,
             const SampleList::Range* range, SampleWork work) const;
 
@@ -54,6 +59,7 @@ class OcclusionMask {
   SampleList lit_;
   std::vector<SampleList::Range> partly_lit_;  ///< the part of the list that rays are needed for
   vulkan::Buffer found_;                       ///< lengths of the lists, written by the device
+  vulkan::Buffer faults_;                      ///< as faults.glsl has it
   vulkan::Buffer occluders_;                   ///< triangles for each sample of that part
   std::uint32_t occluder_limit_ = 0;           ///< most triangles of a sample; 0: none are listed
   std::uint32_t overflowed_ = 0;               ///< samples with more
