@@ -11,6 +11,12 @@
 namespace penumbra {
 namespace {
 
+/// 1 - cos, which a float of the cosine loses at small angles.
+double versine(double degrees) {
+  const double sine = std::sin(0.5 * glm::radians(degrees));
+  return 2.0 * sine * sine;
+}
+
 std::uint64_t mix(std::uint64_t x) {  // splitmix64's finaliser (Steele et al. 2014)
   x += 0x9e3779b97f4a7c15ull;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
@@ -144,9 +150,13 @@ shader::LightData light_data(const WorldLight& world, float points, float weight
                          light.attenuation == Attenuation::inverse_square ? 1.0f : 0.0f);
   data.cone = {std::cos(glm::radians(light.inner_angle)), std::cos(glm::radians(light.outer_angle)),
                points, weight};
-  data.extent = {static_cast<float>(light.extent.kind), half.x, half.y, 0.0f};
-  data.right = glm::vec4(world.right, 0.0f);
-  data.up = glm::vec4(world.up, 0.0f);
+  // A line of light is drawn as a thin strip: shaders divide by both sides.
+  const double thinnest =
+      light.extent.kind == ExtentKind::rectangle ? 1e-4 * std::max(half.x, half.y) : 0.0;
+  data.extent = {static_cast<float>(light.extent.kind), std::max(half.x, thinnest),
+                 std::max(half.y, thinnest), 0.0f};
+  data.right = glm::vec4(world.right, versine(light.inner_angle));
+  data.up = glm::vec4(world.up, versine(light.outer_angle));
   return data;
 }
 

@@ -71,8 +71,9 @@ CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, d
     matrices.clip_from_world =
         clip_from_view_perspective(camera.vertical_fov, aspect, camera.near_plane) * view;
   } else {
-    const double reach =
-        glm::length(matrices.position) + 2.0 * scene_radius + camera.near_plane + 1.0;
+    const double content = glm::length(matrices.position) + 2.0 * scene_radius;
+    const double margin = content > 0.0 ? std::min(1.0, content) : 1.0;
+    const double reach = content + camera.near_plane + margin;
     matrices.clip_from_world =
         clip_from_view_orthographic(camera.orthographic_height * aspect, camera.orthographic_height,
                                     camera.near_plane, reach) *

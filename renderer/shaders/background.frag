@@ -7,9 +7,9 @@ layout(location = 2) out vec4 out_radiance;
 
 void main() {
   vec2 ndc = 2.0 * gl_FragCoord.xy / frame.size.xy - 1.0;
-  vec4 near = frame.world_from_clip * vec4(ndc, 1.0, 1.0);
+  // Of clip space, z 0 and w 1 are the ray's direction, whatever the near plane.
   vec3 direction = frame.camera_position.w > 0.5
-                       ? normalize(near.xyz / near.w - frame.camera_position.xyz)
+                       ? normalize((frame.world_from_clip * vec4(ndc, 0.0, 1.0)).xyz)
                        : frame.camera_direction.xyz;
   float elevation = clamp(direction.y, 0.0, 1.0);
   out_position = vec4(0.0);

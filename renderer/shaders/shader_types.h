@@ -48,8 +48,8 @@ struct LightData {
               // of a point
   vec4 extent;  // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half
                 // height; m, or tangents of the angle when directional
-  vec4 right;  // xyz unit, along a rectangle's width
-  vec4 up;     // xyz unit, along its height
+  vec4 right;  // xyz unit, along a rectangle's width; w 1 - cosine of inner angle
+  vec4 up;     // xyz unit, along its height; w 1 - cosine of outer angle
 };
 
 struct MaterialData {

@@ -8,7 +8,7 @@ float upper_bound(vec2 moments, float depth, float deviation) {
   float variance = max(moments.y - moments.x * moments.x, deviation * deviation);
   float behind = depth - moments.x;
   if (behind <= 0.0) return 1.0;
-  return variance / max(variance + behind * behind, 1e-30);
+  return variance / max(variance + behind * behind, 1.2e-38);
 }
 
 /// Light that bleeds is dim: what is below the reduction becomes shadow (Adorjan 2013, 3.3.1).

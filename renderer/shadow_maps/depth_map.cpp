@@ -162,13 +162,19 @@ VkFormat depth_format(const ParameterValues& parameters) {
 /// The range that parameters ask for in place of what was fitted.
 void set_range(LightView& view, const ParameterValues& parameters) {
   if (!parameters.contains("near")) return;
-  const auto near = static_cast<float>(real_of(parameters, "near"));
-  const auto far = static_cast<float>(real_of(parameters, "far"));
-  if (near > 0.0f) view.near_distance = near;
-  if (far > 0.0f) view.far_distance = far;
-  // 1/z begins somewhere before 0.
+  const auto given = [&](const char* name) {
+    const auto value = static_cast<float>(real_of(parameters, name));
+    if (real_of(parameters, name) > 0.0 && value < std::numeric_limits<float>::min())
+      throw bad_value(name, std::string(name) + " is smaller than a float can be");
+    return value;
+  };
+  const float near = given("near");
+  const float far = given("far");
+  // 1/z begins somewhere before 0, where that was not asked for.
   if (choice_of(parameters, "depth") == "hyperbolic")
     view.near_distance = std::max(view.near_distance, 1e-4f * view.far_distance);
+  if (near > 0.0f) view.near_distance = near;
+  if (far > 0.0f) view.far_distance = far;
   if (view.near_distance >= view.far_distance)
     throw bad_value(near > 0.0f ? "near" : "far",
                     "the map's range must end behind where it begins, but near is " +

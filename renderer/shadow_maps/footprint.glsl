@@ -3,17 +3,25 @@
 #define PENUMBRA_MAP_FOOTPRINT_GLSL
 #include "renderer/shadow_maps/depth_map.glsl"
 
-/// Where the camera's ray through a place of the frame meets the plane through the receiver.
-vec3 plane_seen_at(ShadowQuery query, vec2 pixel) {
-  vec4 near = frame.world_from_clip * vec4(2.0 * pixel / frame.size.xy - 1.0, 1.0, 1.0);
-  vec3 start = near.xyz / near.w;
-  vec3 direction = frame.camera_position.w > 0.5 ? start - frame.camera_position.xyz
-                                                 : frame.camera_direction.xyz;
-  return start + direction * dot(query.normal, query.position - start) / dot(query.normal, direction);
+/// From the receiver to where the camera's ray through a place of the frame meets the plane through it.
+/// Without differences of positions, which a distant camera or a near plane close to it would spoil.
+vec3 step_on_plane(ShadowQuery query, vec2 pixels) {
+  vec2 step = 2.0 * pixels / frame.size.xy;
+  vec3 across = (frame.world_from_clip * vec4(step, 0.0, 0.0)).xyz;
+  if (frame.camera_position.w < 0.5) {
+    vec3 along = frame.camera_direction.xyz;
+    return across - along * dot(query.normal, across) / dot(query.normal, along);
+  }
+  // Of clip space, z 0 and w 1 are the ray's direction at unit depth.
+  vec3 along = (frame.world_from_clip * vec4(2.0 * query.pixel / frame.size.xy - 1.0, 0.0, 1.0)).xyz;
+  float facing = dot(query.normal, along);
+  float slope = dot(query.normal, across);
+  float depth = dot(query.position - frame.camera_position.xyz, along) / dot(along, along);
+  return depth * (facing * across - slope * along) / (facing + slope);
 }
 
-vec2 texel_seen_at(ShadowQuery query, int face, vec2 pixel) {
-  vec4 clip = map.faces[face].clip_from_world * vec4(plane_seen_at(query, pixel), 1.0);
+vec2 texel_seen_at(ShadowQuery query, int face, vec2 pixels) {
+  vec4 clip = map.faces[face].clip_from_world * vec4(query.position + step_on_plane(query, pixels), 1.0);
   return (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
 }
 
@@ -21,10 +29,8 @@ vec2 texel_seen_at(ShadowQuery query, int face, vec2 pixel) {
 /// receiver's plane: differences between neighbouring pixels are garbage across depth edges.
 vec4 map_footprint(ShadowQuery query, MapPoint point) {
   const vec2 right = vec2(0.5, 0.0), down = vec2(0.0, 0.5);
-  return vec4(texel_seen_at(query, point.face, query.pixel + right) -
-                  texel_seen_at(query, point.face, query.pixel - right),
-              texel_seen_at(query, point.face, query.pixel + down) -
-                  texel_seen_at(query, point.face, query.pixel - down));
+  return vec4(texel_seen_at(query, point.face, right) - texel_seen_at(query, point.face, -right),
+              texel_seen_at(query, point.face, down) - texel_seen_at(query, point.face, -down));
 }
 
 /// Width of the square of texels that a pixel covers, its longer side as a mip chain has it.

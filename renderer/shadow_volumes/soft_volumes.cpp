@@ -48,7 +48,7 @@ vulkan::Buffer upload_table(PrepareContext& context, std::uint32_t size) {
 
 void SoftVolumes::draw(PrepareContext& context, const SoftVolumeOptions& options) {
   const glm::dvec3 half = extent_half_size(*context.light.source);
-  const bool soft = half.x > 0.0 && half.y > 0.0;
+  const bool soft = half.x > 0.0 || half.y > 0.0;
   VolumeOptions hard;
   hard.clamp = options.clamp;
   hard.exact_sides = soft;

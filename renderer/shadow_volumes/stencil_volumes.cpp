@@ -313,6 +313,13 @@ void StencilVolumes::draw(PrepareContext& context, const VolumeOptions& options)
   if (options.counting == Counting::before) wanted.as_sheets = masked_instances(context);
   draws = list_volume_draws(context, wanted);
   add_steps(context, options, draws, steps, nullptr);
+  if (options.counting == Counting::before && !options.near_caps) {
+    wanted.accept = in_shadow;
+    if (!list_volume_draws(context, wanted).draws.empty())
+      context.notes.push_back(
+          "the camera may stand in a shadow, or its near plane cut one: volumes counted before the "
+          "surface are wrong then");
+  }
   if (options.near_caps) {
     // What is culled has neither sides nor caps; besides, only what lies between light and near
     // plane has caps.

@@ -63,8 +63,7 @@ void level_ends(inout vec3 a, inout vec3 b) {
 
 // Distance from the camera within which the near plane may cut a wedge open.
 float near_reach() {
-  vec4 corner = frame.world_from_clip * vec4(1.0, 1.0, 1.0, 1.0);
-  return 1.01 * length(corner.xyz / corner.w - frame.camera_position.xyz);
+  return 1.01 * frame.camera_direction.w * length((frame.world_from_clip * vec4(1.0, 1.0, 0.0, 1.0)).xyz);
 }
 
 vec4 far_end(vec3 from, vec3 along, bool clamped) {

@@ -9,7 +9,7 @@ float positive_bound(vec2 moments, float depth, float deviation) {
   return upper_bound(moments, warped, parameter_c_positive * warped * deviation);
 }
 float negative_bound(vec2 moments, float depth, float deviation) {
-  float warped = -exp(-parameter_c_negative * depth);
+  float warped = -exp(parameter_c_negative * (0.5 - depth));
   return upper_bound(moments, warped, -parameter_c_negative * warped * deviation);
 }
 
@@ -31,6 +31,6 @@ vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   vec4 moments = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0);
   if (!is_finite(moments)) return vec4(1.0, 0.0, 1.0, 1.0);
   float negative = parameter_components == components_4
-                       ? -log(max(-moments.z, 1e-38)) / parameter_c_negative : 0.0;
+                       ? 0.5 - log(max(-moments.z, 1e-38)) / parameter_c_negative : 0.0;
   return vec4(log(moments.x) / parameter_c_positive, negative, 0.0, 1.0);
 }

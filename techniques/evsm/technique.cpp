@@ -23,7 +23,8 @@ std::vector<Parameter> evsm_parameters() {
       "Its square overflows above 44.3, with fp16 above 5.5."));
   list.push_back(constant_parameter(
       "c_negative", 10.0,
-      "Steepness of the warp -exp(-c z), which mends surfaces that slope within the kernel."));
+      "Steepness of the warp -exp(c (1/2 - z)), which mends surfaces that slope within the kernel. "
+      "Its square overflows above 88.7, with fp16 above 11."));
   Parameter components;
   components.name = "components";
   components.type = ParameterType::choice;

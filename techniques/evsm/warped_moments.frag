@@ -3,7 +3,9 @@
 #include "renderer/shadow_maps/half_range.glsl"
 vec4 encode_depth(float depth) {
   float positive = exp(parameter_c_positive * depth);
-  float negative = -exp(-parameter_c_negative * depth);
-  return vec4(in_format(positive), in_format(positive * positive), negative, negative * negative);
+  // Centred, so that neither end underflows before the other overflows.
+  float negative = exp(parameter_c_negative * (0.5 - depth));
+  return vec4(in_format(positive), in_format(positive * positive), -in_format(negative),
+              in_format(negative * negative));
 }
 #include "renderer/shadow_maps/blurred_map.frag"
