@@ -117,6 +117,23 @@ struct Front {
 };
 std::string draw(const Front& chart);
 
+/// Named rows and columns of shaded cells with a word in each.
+struct HeatMap {
+  Frame frame;
+  struct Cell {
+    std::optional<double> shade;  ///< 0 dark to 1 white; empty: left blank
+    std::string text;
+  };
+  struct Row {
+    std::string label;
+    std::vector<Cell> cells;  ///< one a column
+  };
+  std::vector<std::string> columns;
+  std::vector<Row> rows;
+  std::string low, high;  ///< what the darkest and the lightest shade mean
+};
+std::string draw(const HeatMap& chart);
+
 /// Indices of points that none beats: none is at most as large in both coordinates and smaller in
 /// one. By x, then y.
 std::vector<std::size_t> lower_left_front(const std::vector<ScatterPoint>& points);

@@ -27,10 +27,13 @@ ExactRays::ExactRays(const Scene& scene) {
       const glm::dvec4 point(glm::dvec3(mesh.positions[i]), 1.0);
       return glm::dvec3(instance.world_from_object * point);
     };
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-      triangles_.push_back(
-          {{corner(mesh.indices[i]), corner(mesh.indices[i + 1]), corner(mesh.indices[i + 2])},
-           instance.casts_shadow});
+    // A matrix that mirrors turns corners round; outside stays outside.
+    const bool mirrors = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const glm::dvec3 a = corner(mesh.indices[i]), b = corner(mesh.indices[i + 1]),
+                       c = corner(mesh.indices[i + 2]);
+      triangles_.push_back({{a, mirrors ? c : b, mirrors ? b : c}, instance.casts_shadow});
+    }
   }
   order_.resize(triangles_.size());
   std::iota(order_.begin(), order_.end(), 0u);
@@ -112,7 +115,8 @@ std::optional<ExactRays::Hit> ExactRays::nearest(const glm::dvec3& from, const g
     until = distance;
     const auto& [a, b, c] = triangles_[triangle].corners;
     const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
-    found = {distance, triangle, glm::dot(normal, along) > 0.0 ? -normal : normal};
+    const bool behind = glm::dot(normal, along) > 0.0;
+    found = {distance, triangle, behind ? -normal : normal, behind};
   });
   return found;
 }

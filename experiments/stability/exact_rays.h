@@ -19,6 +19,7 @@ class ExactRays {
     double distance;  ///< in lengths of the direction
     std::uint32_t triangle;
     glm::dvec3 normal;  ///< of the facet, unit, against the ray
+    bool from_behind;   ///< the facet's corners run clockwise as seen from where the ray comes
   };
   /// Nearest surface from `from` along `along`, beyond `after`.
   std::optional<Hit> nearest(const glm::dvec3& from, const glm::dvec3& along, double after) const;

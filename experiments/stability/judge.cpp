@@ -22,6 +22,8 @@ constexpr double firm_change = 0.1;
 constexpr double least_facing = 1e-6;
 /// Light below which a pixel says nothing about a lamp that went out.
 constexpr double least_light = 1e-6;
+/// Share of a cone's strength below which its border is near: there floats may see none.
+constexpr double least_strength = 0.02;
 
 /// Evenly spread points of the unit cube (Roberts 2018, R3).
 glm::dvec3 spread_point(std::uint32_t index) {
@@ -105,7 +107,10 @@ class Judge {
   std::optional<Sample> sample(const glm::dvec2& place, std::size_t count) const {
     const Camera& camera = scene_.cameras.front();
     const ViewRay view = view_ray(camera, place, width_, height_);
-    const auto hit = rays_.nearest(view.from, view.along, camera.near_plane);
+    auto hit = rays_.nearest(view.from, view.along, camera.near_plane);
+    // Subjects are of one material; what is not double-sided is not seen from behind.
+    while (hit && hit->from_behind && !scene_.materials[0].double_sided)
+      hit = rays_.nearest(view.from, view.along, hit->distance);
     if (!hit) return std::nullopt;
     const glm::dvec3 position = view.from + hit->distance * view.along;
     const bool directional = light_.kind == LightKind::directional;
@@ -114,18 +119,23 @@ class Judge {
     };
     count = std::min(count, points_.size());
     std::size_t seen = 0;
+    double light = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       const glm::dvec3 to_point = way(points_[i]);
+      const double cosine = glm::dot(hit->normal, glm::normalize(to_point));
       // Where part of the light lies below the facet, shares are a matter of definition.
-      if (glm::dot(hit->normal, glm::normalize(to_point)) < least_facing) return std::nullopt;
+      if (cosine < least_facing) return std::nullopt;
+      light += cosine * cone_strength(light_, glm::normalize(to_point));
       seen += !rays_.hidden(position, to_point, hit->triangle);
     }
     const glm::dvec3 center =
         glm::normalize(directional ? -light_.direction : light_.position - position);
-    const double strength = cone_strength(light_, center) * light_.intensity;
-    if (strength <= 0.0) return std::nullopt;
-    return Sample{static_cast<double>(seen) / static_cast<double>(count),
-                  strength * glm::dot(hit->normal, center)};
+    const double strength = cone_strength(light_, center);
+    if (strength < least_strength) return std::nullopt;
+    // Light may be taken from the centre or from every point: the lesser is owed by both.
+    const auto points = static_cast<double>(count);
+    light = std::min(light / points, strength * glm::dot(hit->normal, center));
+    return Sample{static_cast<double>(seen) / points, light_.intensity * light};
   }
 
   /// The middle of a pixel, if its answer does not change a little beside.

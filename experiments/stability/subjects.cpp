@@ -11,9 +11,11 @@ namespace {
 
 using scenes::Solid;
 
-constexpr double flat = 0.0;  ///< crease: every facet keeps its own normal
+constexpr double flat = 1.0;  ///< crease, degrees: every facet keeps its own normal
 
 const glm::dvec3 skew_axis = glm::normalize(glm::dvec3(0.36, 0.48, 0.8));
+
+const glm::dvec3 lamp_place{-2.2, 6.2, 2.6};
 
 /// The crate's solid around its own middle, 1 m wide.
 Solid crate(double thickness) {
@@ -30,6 +32,12 @@ glm::dmat4 translation(const glm::dvec3& by) {
   return glm::translate(glm::dmat4(1.0), by);
 }
 
+glm::dmat4 crate_place(const SubjectShape& shape) {
+  return translation({-0.4, shape.gap + 0.5 * shape.thickness, 0.1}) *
+         glm::rotate(glm::dmat4(1.0), glm::radians(27.0), glm::dvec3(0, 1, 0)) *
+         glm::scale(glm::dmat4(1.0), {shape.mirrored ? -1.0 : 1.0, 1.0, shape.squash});
+}
+
 scenes::SceneBuilder builder() {
   scenes::SceneBuilder b("subject", "A subject of the stability report");
   b.scene.ambient = glm::vec3(0.08f);
@@ -38,7 +46,7 @@ scenes::SceneBuilder builder() {
 
 void light_and_camera(scenes::SceneBuilder& b) {
   Light& lamp =
-      b.spot("lamp", {-2.2, 6.2, 2.6}, {0.0, 0.4, 0.0}, glm::vec3(1.0f), 1.0f, 35.0, LightExtent{});
+      b.spot("lamp", lamp_place, {0.0, 0.4, 0.0}, glm::vec3(1.0f), 1.0f, 35.0, LightExtent{});
   lamp.up = {0.0, 0.0, 1.0};
   b.camera("main", {2.5, 3.0, 5.0}, {0.1, 0.5, 0.0}, 40.0);
 }
@@ -47,11 +55,8 @@ Scene assembled(const SubjectShape& shape, const Solid& crate_solid) {
   scenes::SceneBuilder b = builder();
   const scenes::Look grey = b.look("grey", glm::vec3(0.7f), -1, 1.0, 0.0f);
   b.ground({-shape.ground, -shape.ground}, {shape.ground, shape.ground}, grey);
-  glm::dmat4 place = translation({-0.4, shape.gap + 0.5 * shape.thickness, 0.1}) *
-                     glm::rotate(glm::dmat4(1.0), glm::radians(27.0), glm::dvec3(0, 1, 0)) *
-                     glm::scale(glm::dmat4(1.0), {shape.mirrored ? -1.0 : 1.0, 1.0, shape.squash});
   for (std::uint32_t i = 0; i < shape.copies; ++i)
-    b.place(crate_solid, grey, "crate " + std::to_string(i), place, flat);
+    b.place(crate_solid, grey, "crate " + std::to_string(i), crate_place(shape), flat);
   b.place(scenes::sphere(0.4, 16, 11), grey, "ball", translation({1.1, 0.9, -0.5}), flat);
   b.place(scenes::box({-0.5 * shape.post, 0.1, -0.5 * shape.post},
                       {0.5 * shape.post, 1.4, 0.5 * shape.post}),
@@ -104,6 +109,11 @@ Solid broken_crate(Defect defect) {
 
 Scene subject(const SubjectShape& shape) {
   return assembled(shape, crate(shape.thickness));
+}
+
+glm::dvec3 shadow_border() {
+  const glm::dvec3 edge(crate_place({}) * glm::dvec4(0.5, 0.5, 0.0, 1.0));
+  return lamp_place + (edge - lamp_place) * (lamp_place.y / (lamp_place.y - edge.y));
 }
 
 Scene stack(std::uint32_t count, double thickness) {

@@ -22,6 +22,9 @@ struct SubjectShape {
 /// A crate, a ball of 320 facets and a post over a slab, under a spot 7 m away.
 Scene subject(const SubjectShape& shape = {});
 
+/// A point of the ground in the middle of a straight border of the crate's shadow, upright.
+glm::dvec3 shadow_border();
+
 /// `count` thin plates over each other above a slab, `thickness` metres each, under the same spot.
 Scene stack(std::uint32_t count, double thickness);
 
