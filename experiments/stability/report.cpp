@@ -67,13 +67,18 @@ const Finding* find(const Report& report, const std::string& technique, const st
   return nullptr;
 }
 
-/// What ends an axis, short enough for a cell; ! where it is refused.
+/// A value short enough for a cell.
+std::string short_text(const Axis& axis, double value) {
+  if (!axis.has_between()) return axis.text(value);
+  char number[32];
+  std::snprintf(number, sizeof(number), "%.2g", value);
+  return number;
+}
+
+/// What ends an axis; ! where it is refused.
 std::string first_break(const Finding& finding, const Axis& axis) {
   if (!finding.ends) return "holds";
-  char number[32];
-  std::snprintf(number, sizeof(number), "%.2g", *finding.ends);
-  return (axis.has_between() ? number : axis.text(*finding.ends)) +
-         std::string(finding.refused ? "!" : "");
+  return short_text(axis, *finding.ends) + (finding.refused ? "!" : "");
 }
 
 /// Scene axes against techniques: how far each goes.
@@ -111,7 +116,7 @@ std::string map_of_errors(const Report& report, const std::string& technique) {
   map.frame = {.title = "Errors of " + technique,
                .description =
                    "Rows are axes, columns their steps from gentle to absurd. A cell "
-                   "holds the value and visibility_rms there.",
+                   "holds the value; its shade is visibility_rms there.",
                .width_mm = 260.0};
   map.low = "visibility_rms 0.4 or no picture";
   map.high = "0";
@@ -129,10 +134,7 @@ std::string map_of_errors(const Report& report, const std::string& technique) {
       const double rms = step.state == State::drawn && step.verdict.non_finite == 0
                              ? step.verdict.visibility_rms
                              : 1.0;
-      row.cells.push_back({1.0 - std::min(1.0, rms / 0.4),
-                           axis.text(step.value) + (step.state == State::drawn
-                                                        ? ": " + digits(std::round(1e3 * rms) / 1e3)
-                                                        : ": refused")});
+      row.cells.push_back({1.0 - std::min(1.0, rms / 0.4), short_text(axis, step.value)});
     }
     most = std::max(most, row.cells.size());
     map.rows.push_back(std::move(row));
