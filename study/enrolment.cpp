@@ -36,6 +36,17 @@ std::vector<std::size_t> balanced_order(std::size_t count, std::uint64_t seed, s
   return order;
 }
 
+/// Parts a repeated page from its first showing: a second one of the last page moves behind the
+/// others, or where it is the only one, the last two pages change places.
+void keep_apart(std::vector<PlannedPage>& shown, const std::vector<std::size_t>& repeats,
+                std::vector<std::size_t>& order) {
+  if (repeats[order.front()] != shown.back().page) return;
+  if (order.size() > 1)
+    std::rotate(order.begin(), order.begin() + 1, order.end());
+  else
+    std::swap(shown[shown.size() - 2], shown[shown.size() - 1]);
+}
+
 }  // namespace
 
 std::size_t next_place(std::span<const PlaceState> places) {
@@ -58,7 +69,9 @@ EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t
                           balanced_order(study.pages[page].pictures.size(), seed, stream, place)});
   }
   if (!study.repeats.empty()) {
-    for (const std::size_t index : balanced_order(study.repeats.size(), seed, 2, place)) {
+    auto order = balanced_order(study.repeats.size(), seed, 2, place);
+    keep_apart(plan.pages, study.repeats, order);
+    for (const std::size_t index : order) {
       const std::size_t page = study.repeats[index];
       const auto stream = first_stream + pages + static_cast<std::uint32_t>(page);
       plan.pages.push_back(
@@ -67,6 +80,10 @@ EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t
     }
   }
   return plan;
+}
+
+const char* kind_name(PageKind kind) {
+  return kind == PageKind::practice ? "practice" : kind == PageKind::repeat ? "repeat" : "ranking";
 }
 
 const Page& page_of(const Study& study, const PlannedPage& planned) {

@@ -10,6 +10,9 @@ namespace penumbra::study {
 
 enum class PageKind { practice, ranking, repeat };
 
+/// "practice", "ranking" or "repeat".
+const char* kind_name(PageKind kind);
+
 /// One page as one participant sees it.
 struct PlannedPage {
   PageKind kind = PageKind::ranking;

@@ -47,9 +47,13 @@ const std::vector<Column>& pair_columns() {
 const std::vector<Column>& participant_columns() {
   static const std::vector<Column> list{
       {"participant", "text", "pseudonym"},
+      {"place", "integer", "in the balanced orders of pages and pictures, from 0"},
       {"entered_at", "text", "ISO 8601, UTC"},
+      {"last_seen_at", "text", "when the last answer was stored, ISO 8601, UTC"},
       {"completed_at", "text", "ISO 8601, UTC; empty where the participant stopped early"},
       {"completed", "boolean", "TRUE where all pages were answered and the study was finished"},
+      {"outcome", "text",
+       "completed; screened_out: a check ended the study; started: stopped early or still at it"},
       {"pages_answered", "integer", "practice and second showings included"},
       {"pages", "integer", "pages that the participant was given"},
       {"language", "text", "of the page"},
@@ -57,8 +61,19 @@ const std::vector<Column>& participant_columns() {
       {"test", "boolean", "TRUE for a researcher's preview, which is counted nowhere"},
       {"excluded", "boolean", "TRUE where a researcher took the participant out"},
       {"exclusion_reason", "text", "as the researcher gave it"},
-      {"flags", "text", "names of flags, separated by blanks"}};
+      {"flags", "text", "names of flags, separated by blanks"},
+      {"entries", "integer", "how often the same name in the link entered the study"},
+      {"practice_right", "boolean", "TRUE where the practice page was ordered as it is meant"},
+      {"patches_seen", "integer", "dark patches of eight that were told apart on the screen"},
+      {"comment", "text", "as it was typed at the end"}};
   return list;
+}
+
+template <typename Value>
+std::string optional_text(const std::optional<Value>& value) {
+  if (!value) return {};
+  if constexpr (std::is_same_v<Value, bool>) return truth(*value);
+  return std::to_string(*value);
 }
 
 }  // namespace
@@ -91,12 +106,16 @@ void PairsTable::append(const std::vector<ResponseRow>& page, std::string& text)
 
 WideTable::WideTable(const Study& study) {
   for (const Page& page : study.pages) {
+    if (!page.counted()) continue;
     PageColumns columns{page.id, {}};
     for (const Picture& picture : page.pictures) columns.pictures.push_back(picture.id);
     pages.push_back(columns);
   }
   for (const std::size_t index : study.repeats) {
-    PageColumns columns = pages.at(index);
+    const auto first = std::find_if(pages.begin(), pages.end(), [&](const PageColumns& page) {
+      return page.id == study.pages.at(index).id;
+    });
+    PageColumns columns = *first;
     columns.id += ".again";
     pages.push_back(columns);
   }
@@ -141,15 +160,19 @@ void WideTable::append(const std::vector<ResponseRow>& rows, std::string& text) 
   text += line_of(cells);
 }
 
-ParticipantsTable::ParticipantsTable(const Study& study) : parameters(study.id_parameters) {
-  for (const Demographic& question : study.demographics) details.push_back(question.id);
+ParticipantsTable::ParticipantsTable(const Study& study)
+    : parameters(study.id_parameters), checked(checked_pages(study)) {
+  for (const Demographic& question : study.demographics) questions.push_back(question.id);
 }
 
 std::vector<Column> ParticipantsTable::columns() const {
   std::vector<Column> list = participant_columns();
   for (const auto& name : parameters)
     list.push_back({"parameter." + name, "text", "parameter of the link the participant came by"});
-  for (const auto& name : details)
+  for (const auto& name : checked)
+    list.push_back({"expected." + name, "boolean",
+                    "TRUE where this page got the answer that an attentive person gives"});
+  for (const auto& name : questions)
     list.push_back({"answer." + name, "text", "answer to the study's question about the person"});
   return list;
 }
@@ -160,9 +183,12 @@ std::string ParticipantsTable::header() const {
 
 void ParticipantsTable::append(const ParticipantRow& row, std::string& text) const {
   std::vector<std::string> cells{row.participant,
+                                 std::to_string(row.place),
                                  row.entered_at,
+                                 row.seen_at,
                                  row.completed_at,
                                  truth(!row.completed_at.empty()),
+                                 row.outcome,
                                  std::to_string(row.pages_answered),
                                  std::to_string(row.pages),
                                  row.language,
@@ -170,9 +196,20 @@ void ParticipantsTable::append(const ParticipantRow& row, std::string& text) con
                                  truth(row.test),
                                  truth(row.excluded),
                                  row.exclusion_reason,
-                                 row.flags};
+                                 row.flags,
+                                 std::to_string(row.checks.entries),
+                                 optional_text(row.checks.practice_right),
+                                 optional_text(row.checks.patches_seen),
+                                 text_of(row.details, "comment")};
   for (const auto& name : parameters) cells.push_back(text_of(row.parameters, name));
-  for (const auto& name : details) cells.push_back(text_of(row.details, name));
+  for (const auto& name : checked) {
+    const auto& pages = row.checks.pages;
+    const auto page = std::find_if(pages.begin(), pages.end(),
+                                   [&](const CheckedPage& one) { return one.page == name; });
+    cells.push_back(page == pages.end() ? "" : truth(page->met));
+  }
+  const auto answers = row.details.value("demographics", nlohmann::json::object());
+  for (const auto& name : questions) cells.push_back(text_of(answers, name));
   text += line_of(cells);
 }
 
@@ -197,6 +234,7 @@ std::string write_codebook(const Study& study) {
       text += line_of({file, column.name, column.type, column.meaning});
   };
   add("responses.csv", response_columns());
+  add("earlier_responses.csv", response_columns());
   add("responses_wide.csv", WideTable(study).columns());
   add("pairs.csv", pair_columns());
   add("participants.csv", ParticipantsTable(study).columns());

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "study/checks.h"
 #include "study/responses.h"
 
 /// The tables of export.zip beside responses.csv. Each is written piece by piece, so that a study
@@ -48,8 +49,11 @@ class WideTable {
 /// One participant as participants.csv has it.
 struct ParticipantRow {
   std::string participant;
+  std::size_t place = 0;
   std::string entered_at;
+  std::string seen_at;
   std::string completed_at;  ///< empty: stopped early, or is still at it
+  std::string outcome;       ///< started, completed or screened_out
   std::size_t pages_answered = 0;
   std::size_t pages = 0;
   std::string language;
@@ -57,7 +61,8 @@ struct ParticipantRow {
   bool test = false;  ///< a researcher's preview
   bool excluded = false;
   std::string exclusion_reason;
-  std::string flags;                                     ///< names separated by blanks
+  std::string flags;  ///< names separated by blanks
+  PersonChecks checks;
   nlohmann::json parameters = nlohmann::json::object();  ///< of the link
   nlohmann::json details = nlohmann::json::object();     ///< answers about the person
 };
@@ -73,7 +78,8 @@ class ParticipantsTable {
 
  private:
   std::vector<std::string> parameters;
-  std::vector<std::string> details;
+  std::vector<std::string> questions;  ///< about the person
+  std::vector<std::string> checked;    ///< pages with an expected answer
 };
 
 /// codebook.csv: every file of the export and every column of its tables.

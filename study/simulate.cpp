@@ -136,6 +136,9 @@ json simulate_answer(const Study& study, const SimulatedPerson& person, const En
   const Page& page = page_of(study, planned);
   Random ranks(person.seed, stream_ranks, page_index);
   auto shelves = draw_shelves(worths_of(page, planned, person, preferences), preferences, ranks);
+  // Who reads what a page asks for answers an attention item as asked.
+  if (!page.counted() && person.kind != PersonKind::random)
+    std::fill(shelves.begin(), shelves.end(), 0);
   const int last = *std::max_element(shelves.begin(), shelves.end());
   const bool inverted = person.kind == PersonKind::inverted;
   json places = json::object();
@@ -166,7 +169,8 @@ std::vector<ResponseRow> simulate_responses(const Study& study,
     const std::string name =
         "S" + std::string(number.size() < 6 ? 6 - number.size() : 0, '0') + number;
     for (std::size_t j = 0; j < plan.pages.size(); ++j) {
-      if (plan.pages[j].kind == PageKind::practice) continue;
+      if (plan.pages[j].kind == PageKind::practice || !page_of(study, plan.pages[j]).counted())
+        continue;
       const json body = simulate_answer(study, people[i], plan, j, preferences);
       const Answer answer = parse_answer(body, study, plan.pages[j].slots.size());
       const auto page_rows =

@@ -7,6 +7,7 @@
 #include "renderer/error.h"
 #include "renderer/render.h"
 #include "study/digest.h"
+#include "study/faults.h"
 #include "study/study_schema.h"
 
 namespace penumbra::study {
@@ -22,25 +23,24 @@ std::string indexed(const std::string& path, std::size_t index) {
 /// Reads texts and checks that they have the study's languages, no more and no fewer.
 class TextReader {
  public:
-  explicit TextReader(const std::vector<std::string>& languages_) : languages(languages_) {}
+  TextReader(const std::vector<std::string>& languages_, FaultList& faults_)
+      : languages(languages_), faults(faults_) {}
 
   Texts read(const json& value, const std::string& path) const {
     auto texts = value.get<Texts>();
-    for (const std::string& language : languages) {
-      if (!texts.contains(language)) {
-        throw bad_value(path + "." + language, "the study has this language; the text is missing");
-      }
-    }
-    for (const auto& [language, unused] : texts) {
-      if (std::find(languages.begin(), languages.end(), language) == languages.end()) {
-        throw bad_value(path + "." + language, "not one of the study's languages");
-      }
-    }
+    for (const std::string& language : languages)
+      if (!texts.contains(language))
+        faults.add(
+            bad_value(path + "." + language, "the study has this language; the text is missing"));
+    for (const auto& [language, unused] : texts)
+      if (std::find(languages.begin(), languages.end(), language) == languages.end())
+        faults.add(bad_value(path + "." + language, "not one of the study's languages"));
     return texts;
   }
 
  private:
   const std::vector<std::string>& languages;
+  FaultList& faults;
 };
 
 Picture read_picture(const json& value) {
@@ -76,7 +76,22 @@ ReferenceUse read_reference(const std::string& use) {
   return use == "both" ? ReferenceUse::both : ReferenceUse::none;
 }
 
-Page read_page(const json& value, const json& common_techniques, const std::string& path) {
+std::optional<Expectation> read_expectation(const json& value, const std::vector<Picture>& pictures,
+                                            const std::string& path) {
+  if (value.is_null()) return std::nullopt;
+  if (value.is_string()) return Expectation{true, {}, {}};
+  Expectation expected{false, value.at("better"), value.at("worse")};
+  for (const auto& [key, id] : {std::pair{"better", &expected.better}, {"worse", &expected.worse}})
+    if (std::none_of(pictures.begin(), pictures.end(),
+                     [wanted = id](const Picture& picture) { return picture.id == *wanted; }))
+      throw bad_value(path + "." + key, "the page has no picture `" + *id + "`");
+  if (expected.better == expected.worse)
+    throw bad_value(path + ".worse", "is the same picture as `better`");
+  return expected;
+}
+
+Page read_page(const json& value, const json& common_techniques, const TextReader& texts,
+               const std::string& path) {
   Page page;
   page.scene = value.at("scene").get<std::string>();
   page.id = value.value("id", page.scene);
@@ -96,29 +111,41 @@ Page read_page(const json& value, const json& common_techniques, const std::stri
   if (page.pictures.size() < 2) {
     throw bad_value(list_path, "a page needs at least two pictures to rank");
   }
+  page.expected =
+      read_expectation(value.value("expected", json()), page.pictures, path + ".expected");
+  if (value.contains("question"))
+    page.question = texts.read(value.at("question"), path + ".question");
+  else if (!page.counted())
+    throw bad_value(path + ".question", "must ask for what is expected on this page");
   return page;
 }
 
-void read_pages(const json& document, Study& study) {
+void read_pages(const json& document, const TextReader& texts, FaultList& faults, Study& study) {
   std::set<std::string> ids;
   const json& pages = document.at("pages");
   for (std::size_t i = 0; i < pages.size(); ++i) {
     const std::string path = indexed("pages", i);
-    study.pages.push_back(read_page(pages[i], document.at("techniques"), path));
-    if (!ids.insert(study.pages.back().id).second) {
-      throw bad_value(path + ".id", "two pages are called `" + study.pages.back().id + "`");
-    }
+    faults.attempt([&] {
+      study.pages.push_back(read_page(pages[i], document.at("techniques"), texts, path));
+      if (!ids.insert(study.pages.back().id).second)
+        throw bad_value(path + ".id", "two pages are called `" + study.pages.back().id + "`");
+    });
   }
+  if (!faults.all().empty()) return;  // repeats would name pages that could not be read
   const json repeats = document.value("repeats", json::array());
   for (std::size_t i = 0; i < repeats.size(); ++i) {
     const auto id = repeats[i].get<std::string>();
     const auto page = std::find_if(study.pages.begin(), study.pages.end(),
                                    [&](const Page& candidate) { return candidate.id == id; });
     if (page == study.pages.end()) throw bad_value(indexed("repeats", i), "no page is called so");
+    if (study.pages.size() < 2)
+      throw bad_value(indexed("repeats", i), "another page is needed between its two showings");
+    if (!page->counted())
+      throw bad_value(indexed("repeats", i), "is an attention item, which ranks nothing");
     study.repeats.push_back(static_cast<std::size_t>(page - study.pages.begin()));
   }
   if (document.contains("practice")) {
-    study.practice = Practice{read_page(document.at("practice"), json(), "practice")};
+    study.practice = Practice{read_page(document.at("practice"), json(), texts, "practice")};
     study.practice->page.id = "practice";
   }
 }
@@ -157,6 +184,52 @@ void read_demographics(const json& list, const TextReader& texts, Study& study) 
     }
     study.demographics.push_back(std::move(item));
   }
+}
+
+/// The parameter that names a person: the one the study says, or a panel's own, or the first that
+/// is no name of a study or session.
+std::string person_parameter(const json& document, const std::vector<std::string>& parameters) {
+  const auto has = [&](const std::string& name) {
+    return std::find(parameters.begin(), parameters.end(), name) != parameters.end();
+  };
+  if (document.contains("person_parameter")) {
+    const auto name = document.at("person_parameter").get<std::string>();
+    if (!name.empty() && !has(name))
+      throw bad_value("person_parameter", "must be one of id_parameters");
+    return name;
+  }
+  for (const char* name : {"PROLIFIC_PID", "workerId"})
+    if (has(name)) return name;
+  const std::set<std::string> others{"STUDY_ID", "SESSION_ID", "assignmentId", "hitId"};
+  const auto first = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const auto& name) { return !others.contains(name); });
+  return first == parameters.end() ? "" : *first;
+}
+
+Consequence read_consequence(const json& value) {
+  return value.value("consequence", "flag") == "flag" ? Consequence::flag : Consequence::screen_out;
+}
+
+CompletionCode read_code(const json& value) {
+  return {value.value("code", ""), value.value("url", "")};
+}
+
+/// How people enter, are checked, and leave.
+void read_participation(const json& document, Study& study) {
+  study.phones_allowed = document.value("phones_allowed", true);
+  study.id_parameters = document.value("id_parameters", study.id_parameters);
+  study.person_parameter = person_parameter(document, study.id_parameters);
+  study.several_entries = document.value("several_entries", study.several_entries);
+  study.grace_minutes = document.value("grace_minutes", study.grace_minutes);
+  const json brightness = document.value("brightness", json::object());
+  study.brightness = {brightness.value("minimum_patches", 0), read_consequence(brightness)};
+  const json expectations = document.value("expectations", json::object());
+  study.expectations = {expectations.value("allowed_failures", 0), read_consequence(expectations)};
+  const json completion = document.value("completion", json::object());
+  study.completion = {read_code(completion),
+                      read_code(completion.value("screened_out", json::object())),
+                      read_code(completion.value("over_quota", json::object()))};
+  study.quota = document.value("quota", study.quota);
 }
 
 void read_screening(const json& value, Screening& screening) {
@@ -213,24 +286,24 @@ Study parse_study(const json& document) {
   study.document.erase("$schema");  // tells editors where the schema is, and nothing of the study
   study.id = document.at("id").get<std::string>();
   study.languages = document.at("languages").get<std::vector<std::string>>();
-  const TextReader texts(study.languages);
+  FaultList faults;
+  const TextReader texts(study.languages, faults);
   read_texts(document, texts, study);
   if (document.value("widget", "shelves") == "numeric") study.widget = Widget::numeric;
-  read_picture_settings(document.value("picture", json::object()), study.picture);
-  read_pages(document, study);
-  read_demographics(document.value("demographics", json::array()), texts, study);
+  faults.attempt(
+      [&] { read_picture_settings(document.value("picture", json::object()), study.picture); });
+  faults.attempt([&] { read_pages(document, texts, faults, study); });
+  faults.attempt(
+      [&] { read_demographics(document.value("demographics", json::array()), texts, study); });
   if (document.contains("minimum_window")) {
     study.minimum_window_width = document["minimum_window"].at("width").get<std::uint32_t>();
     study.minimum_window_height = document["minimum_window"].at("height").get<std::uint32_t>();
   }
-  study.phones_allowed = document.value("phones_allowed", true);
   const json analysis = document.value("analysis", json::object());
   study.analysis.alpha = analysis.value("alpha", study.analysis.alpha);
   read_screening(analysis.value("screening", json::object()), study.analysis.screening);
-  study.id_parameters = document.value("id_parameters", std::vector<std::string>{});
-  const json completion = document.value("completion", json::object());
-  study.completion = {completion.value("code", ""), completion.value("url", "")};
-  study.quota = document.value("quota", 0u);
+  faults.attempt([&] { read_participation(document, study); });
+  faults.throw_if_any();
   return study;
 }
 
@@ -319,6 +392,7 @@ json welcome_document(const Study& study) {
           {"minimum_window", window},
           {"phones_allowed", study.phones_allowed},
           {"id_parameters", study.id_parameters},
+          {"minimum_patches", study.brightness.minimum_patches},
           {"demographics", demographics}};
 }
 

@@ -28,6 +28,15 @@ struct Picture {
   std::string label;  ///< abbreviation in tables, the id unless given
 };
 
+/// What an attentive person answers on a page: one picture before another (a gold item), or all on
+/// one place, because the page's question asks for that (an attention item, which ranks nothing and
+/// is counted nowhere).
+struct Expectation {
+  bool all_same = false;
+  std::string better;  ///< ids of pictures; empty with `all_same`
+  std::string worse;
+};
+
 /// One page: pictures of one scene.
 struct Page {
   std::string id;  ///< unique; the scene's id unless given
@@ -35,6 +44,10 @@ struct Page {
   std::string camera;  ///< empty: the scene's first
   ReferenceUse reference = ReferenceUse::none;
   std::vector<Picture> pictures;  ///< to rank, the hidden reference included, in the file's order
+  std::optional<Expectation> expected;
+  Texts question;  ///< empty: the study's
+
+  bool counted() const { return !expected || !expected->all_same; }
 };
 
 /// A page with a known answer, shown first and never counted.
@@ -94,9 +107,34 @@ struct AnalysisPlan {
   Screening screening;
 };
 
+struct CompletionCode {
+  std::string code;
+  std::string url;  ///< may be empty
+};
+
+/// Panels pay by code: one for each way in which taking part can end.
 struct Completion {
-  std::string code;  ///< shown after the last page is committed
-  std::string url;   ///< may be empty
+  CompletionCode complete;      ///< shown after the last page is committed
+  CompletionCode screened_out;  ///< where a check ends the study for a person
+  CompletionCode over_quota;    ///< where the study has as many people as it needs
+};
+
+/// What follows where a person fails a check: a flag, or that the study is over for them.
+enum class Consequence { flag, screen_out };
+
+/// Dark patches shown before the first page.
+inline constexpr int dark_patches = 8;
+
+/// How many of them a person must tell apart.
+struct BrightnessCheck {
+  int minimum_patches = 0;  ///< 0: no check
+  Consequence consequence = Consequence::flag;
+};
+
+/// How failed attention and gold items are taken.
+struct ExpectationRule {
+  int allowed_failures = 0;
+  Consequence consequence = Consequence::flag;
 };
 
 struct Study {
@@ -121,6 +159,11 @@ struct Study {
   bool phones_allowed = true;
   AnalysisPlan analysis;
   std::vector<std::string> id_parameters;  ///< of the page's address, kept with the participant
+  std::string person_parameter;  ///< of them, the one that names a person; empty: none does
+  bool several_entries = false;  ///< whether a person may enter more than once
+  int grace_minutes = 120;       ///< after closing, for those who are amid the study
+  BrightnessCheck brightness;
+  ExpectationRule expectations;
   Completion completion;
   std::uint32_t quota = 0;  ///< completed participants after which nobody enters; 0: no limit
   nlohmann::json document;  ///< what was parsed
@@ -152,7 +195,7 @@ std::vector<nlohmann::json> all_renders(const Study& study);
 /// "languages", "texts": {language: {"title", "introduction", "consent", "question", "most_label",
 /// "least_label", "difficulty_question", "difficulty_labels": [5], "thanks"}}, "widget",
 /// "page_count", "minimum_window": {"width", "height"} | null, "phones_allowed", "id_parameters",
-/// "demographics": [{"id", "required", "question": {language: text}, "options": [{"id",
+/// "minimum_patches", "demographics": [{"id", "required", "question": {language: text}, "options": [{"id",
 /// "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
 nlohmann::json welcome_document(const Study& study);
 

@@ -1,5 +1,6 @@
 #include "study/study_schema.h"
 
+#include <algorithm>
 #include <span>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -9,6 +10,7 @@
 
 #include "renderer/embedded_file.h"
 #include "renderer/error.h"
+#include "study/faults.h"
 #include "study/study.h"
 
 namespace penumbra::study {
@@ -46,12 +48,12 @@ const json& resolve(const json& schema) {
 
 /// Walks document and schema together, so that an unknown key is named by its own path: the
 /// validator names only the object around it. The schema bounds the depth.
-void refuse_unknown_keys(const json& value, const json& schema_or_reference,
-                         const std::string& path) {
+void find_unknown_keys(const json& value, const json& schema_or_reference, const std::string& path,
+                       FaultList& faults) {
   const json& schema = resolve(schema_or_reference);
   if (value.is_array() && schema.contains("items")) {
     for (std::size_t i = 0; i < value.size(); ++i) {
-      refuse_unknown_keys(value[i], schema.at("items"), path + "[" + std::to_string(i) + "]");
+      find_unknown_keys(value[i], schema.at("items"), path + "[" + std::to_string(i) + "]", faults);
     }
   }
   if (!value.is_object() || !schema.contains("properties")) return;
@@ -63,10 +65,26 @@ void refuse_unknown_keys(const json& value, const json& schema_or_reference,
       for (const auto& [name, unused] : properties.items()) {
         names += (names.empty() ? "" : ", ") + name;
       }
-      throw bad_value(member_path(path, key), "unknown key; known are " + names);
+      faults.add(bad_value(member_path(path, key), "unknown key; known are " + names));
+      continue;
     }
-    refuse_unknown_keys(member, *known, member_path(path, key));
+    find_unknown_keys(member, *known, member_path(path, key), faults);
   }
+}
+
+/// The validator says "Failed to match regex specified by 'pattern' constraint."; people look for
+/// the rule in the schema's description.
+std::string in_words(const std::string& description) {
+  static const std::vector<std::pair<std::string, std::string>> words{
+      {"Missing required property", "is incomplete: "},
+      {"'pattern' constraint", "has characters that are not allowed here, or none"},
+      {"'enum' constraint", "is none of the allowed words"},
+      {"Value type not permitted", "is of the wrong kind"},
+  };
+  for (const auto& [sign, said] : words)
+    if (description.find(sign) != std::string::npos)
+      return said + (said.ends_with(": ") ? description : "");
+  return description;
 }
 
 /// The validator's context is ["<root>", "[pages]", "[2]"].
@@ -81,6 +99,26 @@ std::string path_of(const std::vector<std::string>& context) {
   return path;
 }
 
+/// The validator names what is wrong and every object around it; the innermost places are kept, the
+/// deepest first. Objects with unknown keys were named before.
+void find_innermost(valijson::ValidationResults& results, FaultList& faults) {
+  std::vector<valijson::ValidationResults::Error> all;
+  for (valijson::ValidationResults::Error error; results.popError(error);) all.push_back(error);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return a.context.size() > b.context.size();
+  });
+  for (const auto& error : all) {
+    const auto path = path_of(error.context);
+    const bool around =
+        std::any_of(faults.all().begin(), faults.all().end(), [&](const Error& known) {
+          return path.empty() || known.field == path ||
+                 (known.field.starts_with(path) &&
+                  (known.field[path.size()] == '.' || known.field[path.size()] == '['));
+        });
+    if (!around || faults.all().empty()) faults.add(bad_value(path, in_words(error.description)));
+  }
+}
+
 }  // namespace
 
 const std::string& study_schema() {
@@ -90,19 +128,14 @@ const std::string& study_schema() {
 
 void check_study_schema(const json& document) {
   if (!document.is_object()) throw bad_value("", "a study is a JSON object");
-  refuse_unknown_keys(document, schema_document(), "");
+  FaultList faults;
+  find_unknown_keys(document, schema_document(), "", faults);
   valijson::Validator validator;
   valijson::ValidationResults results;
-  if (validator.validate(compiled_schema(), valijson::adapters::NlohmannJsonAdapter(document),
-                         &results)) {
-    return;
-  }
-  valijson::ValidationResults::Error error;
-  valijson::ValidationResults::Error innermost;
-  while (results.popError(error)) {
-    if (error.context.size() > innermost.context.size()) innermost = error;
-  }
-  throw bad_value(path_of(innermost.context), innermost.description);
+  if (!validator.validate(compiled_schema(), valijson::adapters::NlohmannJsonAdapter(document),
+                          &results))
+    find_innermost(results, faults);
+  faults.throw_if_any();
 }
 
 }  // namespace penumbra::study

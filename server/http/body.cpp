@@ -100,4 +100,10 @@ double number_in_query(const httplib::Request& request, const std::string& name,
   return value;
 }
 
+std::string text_in(const nlohmann::json& body, const char* key, const std::string& otherwise) {
+  if (!body.contains(key) || body.at(key).is_null()) return otherwise;
+  if (!body.at(key).is_string()) throw bad_value(key, "must be a text");
+  return body.at(key).get<std::string>();
+}
+
 }  // namespace penumbra::server::http

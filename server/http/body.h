@@ -27,4 +27,7 @@ void check_keys(const nlohmann::json& object, std::initializer_list<const char*>
 double number_in_query(const httplib::Request& request, const std::string& name, double low,
                        double high, double otherwise);
 
+/// An optional text of a body. Throws bad_value where it is something else.
+std::string text_in(const nlohmann::json& body, const char* key, const std::string& otherwise);
+
 }  // namespace penumbra::server::http

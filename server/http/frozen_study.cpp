@@ -16,7 +16,7 @@ FrozenStudy::PagePictures page_pictures(const study::Study& study, const study::
   const auto renders = study::page_renders(study, page);
   const auto digest_of = [&](const nlohmann::json& request) {
     const auto frozen = all.find(request_key(request));
-    return frozen == all.end() ? std::string("lost") : frozen->second.digest;
+    return frozen == all.end() ? std::string(lost_picture) : frozen->second.digest;
   };
   FrozenStudy::PagePictures found;
   for (const auto& request : renders.pictures) found.digests.push_back(digest_of(request));
@@ -53,7 +53,8 @@ std::shared_ptr<const FrozenStudy> FrozenStudies::of(const storage::StudyRecord&
     frozen->pages.push_back(page_pictures(frozen->study, page, pictures));
   if (frozen->study.practice)
     frozen->practice = page_pictures(frozen->study, frozen->study.practice->page, pictures);
-  known[key] = frozen;
+  // A draft can change, and so can the pictures of one that is being published.
+  if (record.status == "open" || record.status == "closed") known[key] = frozen;
   return frozen;
 }
 
@@ -63,7 +64,7 @@ std::shared_ptr<const FrozenStudy> FrozenStudies::of(const std::string& id, int 
     if (const auto found = known.find({id, version}); found != known.end()) return found->second;
   }
   const auto record = studies.find(id, version);
-  if (!record || (record->status != "open" && record->status != "closed")) throw nothing_here();
+  if (!record) throw nothing_here();
   return of(*record);
 }
 

@@ -13,7 +13,9 @@
 
 namespace penumbra::server::http {
 
-/// A published version, parsed once: what participants are served from.
+inline constexpr const char* lost_picture = "lost";
+
+/// A version, parsed once where it is published: what participants are served from.
 struct FrozenStudy {
   study::Study study;
   std::string hash;
@@ -24,8 +26,8 @@ struct FrozenStudy {
     return study::plan_enrolment(study, seed, place);
   }
 
-  /// SHA-256 of the picture at a slot, or "lost" where the database's row is damaged; empty where
-  /// there is no such slot.
+  /// SHA-256 of the picture at a slot, or `lost_picture` in a draft and where the database's row is
+  /// damaged; empty where there is no such slot.
   std::string picture(const study::PlannedPage& planned, std::size_t slot) const;
   /// SHA-256 of the reference shown beside the pictures; empty where none is.
   std::string reference(const study::PlannedPage& planned) const;

@@ -59,8 +59,31 @@ void get_asset(Call& call) {
 }
 
 void get_participant_page(Call& call) {
-  if (!call.service.studies.latest_published(call.path.at("study"))) throw nothing_here();
+  const auto& study = call.path.at("study");
+  // A draft has a page for researchers, who look at it before they publish.
+  const bool shown =
+      call.service.studies.latest_published(study) ||
+      (call.request.has_param("preview") && is_researcher(call.service, call.request) &&
+       call.service.studies.current(study));
+  if (!shown) throw nothing_here();
   send_page(call, "participant", "index.html");
+}
+
+/// A browser, not a program.
+bool reads_pages(const httplib::Request& request) {
+  return request.get_header_value("Accept").find("text/html") != std::string::npos;
+}
+
+/// The page to sign in on, with what was wrong with the token that was given.
+void ask_for_token(Call& call, const std::optional<Error>& wrong) {
+  auto text = page_file(call.service, "researcher", "sign-in.html");
+  if (!text) throw nothing_here();
+  if (wrong) {
+    const std::string place = "<!-- problem -->";
+    text->replace(text->find(place), place.size(), wrong->what());
+  }
+  call.response.status = 401;
+  call.response.set_content(*text, media_type("sign-in.html"));
 }
 
 /// The token moves from the address, which stays in histories, to a cookie that scripts cannot
@@ -69,8 +92,11 @@ void open_session(Call& call) {
   httplib::Request as_header = call.request;
   as_header.headers.erase("Authorization");
   as_header.set_header("Authorization", "Bearer " + call.request.get_param_value("token"));
-  if (!is_researcher(call.service, as_header))
-    throw Error("unauthorized", "this is not the researcher's token", "token");
+  if (!is_researcher(call.service, as_header)) {
+    const Error wrong("unauthorized", "this is not the researcher's token", "token");
+    if (!reads_pages(call.request)) throw wrong;
+    return ask_for_token(call, wrong);
+  }
   std::string cookie = session_cookie;
   cookie.append("=").append(session_of(call.service.token));
   cookie.append("; Path=/; HttpOnly; SameSite=Strict");
@@ -82,8 +108,10 @@ void open_session(Call& call) {
 
 void get_lab(Call& call) {
   if (call.request.has_param("token")) return open_session(call);
-  if (!is_researcher(call.service, call.request))
+  if (!is_researcher(call.service, call.request)) {
+    if (reads_pages(call.request)) return ask_for_token(call, std::nullopt);
     throw Error("unauthorized", "open the address with the token that the server printed", "token");
+  }
   send_page(call, "researcher", "index.html");
 }
 

@@ -96,6 +96,9 @@ const std::vector<Route>& routes() {
     add_sweep_routes(all);
     add_study_routes(all);
     add_export_routes(all);
+    add_qr_code_routes(all);
+    add_people_routes(all);
+    add_enrolment_routes(all);
     add_participant_routes(all);
     add_page_routes(all);
     add_document_routes(all);

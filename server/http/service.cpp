@@ -59,7 +59,7 @@ void store_shipped_studies(Service& service) {
   if (!service.database.healthy()) return;
   for (const auto& file : embedded_studies()) {
     const auto study = study::parse_study(std::string(file.text));
-    if (service.studies.latest(study.id)) continue;
+    if (service.studies.current(study.id)) continue;
     service.studies.put_draft(study.id, study.document, random_seed(), utc_now());
   }
 }

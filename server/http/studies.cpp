@@ -1,14 +1,13 @@
 #include "server/http/studies.h"
 
-#include <algorithm>
-
+#include "scenes/json_text.h"
 #include "server/http/body.h"
 #include "server/http/clock.h"
 #include "server/http/reply.h"
 #include "server/http/secrets.h"
 #include "server/http/service.h"
-#include "server/http/study_export.h"
-#include "study/statistics/report.h"
+#include "study/enrolment.h"
+#include "study/faults.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -27,53 +26,110 @@ json links_of(const std::string& id) {
           {"export", self + "/export.zip"}};
 }
 
+json text_or_null(const std::string& text) {
+  return text.empty() ? json(nullptr) : json(text);
+}
+
+json counts_body(Service& service, const storage::StudyRecord& record) {
+  const auto counts = service.studies.counts(record.id, record.version);
+  return {{"entered", counts.entered},
+          {"completed", counts.completed},
+          {"withdrawn", counts.withdrawn},
+          {"tests", counts.tests}};
+}
+
+json progress_body(const storage::StudyRecord& record) {
+  return {{"pictures", record.pictures_done},
+          {"pictures_total", record.pictures_total},
+          {"error", record.error}};
+}
+
+json version_body(Service& service, const storage::StudyRecord& record) {
+  return {{"version", record.version},
+          {"status", record.status},
+          {"hash", text_or_null(record.hash)},
+          {"created_at", record.created_at},
+          {"opened_at", text_or_null(record.opened_at)},
+          {"closed_at", text_or_null(record.closed_at)},
+          {"participants", counts_body(service, record)},
+          {"progress", progress_body(record)}};
+}
+
 json summary_of(Service& service, const storage::StudyRecord& record) {
   const auto study = study::parse_study(record.document);
-  const auto counts = service.studies.counts(record.id, record.version);
+  auto versions = json::array();
+  for (const auto& version : service.studies.versions(record.id))
+    versions.push_back(version_body(service, version));
   return {{"id", record.id},
           {"title", study.title.at(study.languages.front())},
           {"status", record.status},
           {"version", record.version},
-          {"hash", record.hash.empty() ? json(nullptr) : json(record.hash)},
-          {"participants",
-           {{"entered", counts.entered},
-            {"completed", counts.completed},
-            {"withdrawn", counts.withdrawn},
-            {"tests", counts.tests}}},
+          {"hash", text_or_null(record.hash)},
+          {"participants", counts_body(service, record)},
+          {"versions", versions},
           {"links", links_of(record.id)}};
 }
 
-/// Answers so far per page of the study; the order of pages differs between people.
+/// Answers per picture and position of every page, so that a gap in the balance is seen.
+json cells_of(const study::Page& page, const std::vector<std::vector<int>>& counts) {
+  auto list = json::array();
+  for (std::size_t i = 0; i < page.pictures.size(); ++i)
+    list.push_back({{"picture", page.pictures[i].id}, {"answers_by_slot", counts[i]}});
+  return list;
+}
+
+/// Answers so far per page of the study and cell of its order; the order of pages differs between
+/// people.
 json answers_per_page(Service& service, const storage::StudyRecord& record) {
   const auto study = study::parse_study(record.document);
   std::vector<int> answers(study.pages.size(), 0);
+  std::vector<std::vector<std::vector<int>>> cells;
+  for (const auto& page : study.pages)
+    cells.emplace_back(page.pictures.size(), std::vector<int>(page.pictures.size(), 0));
   for (const auto& person : service.participants.progress(record.id, record.version)) {
     const auto plan = study::plan_enrolment(study, record.seed, person.place);
     for (const int page : person.pages) {
       const auto& planned = plan.pages.at(static_cast<std::size_t>(page));
-      if (planned.kind == study::PageKind::ranking) ++answers.at(planned.page);
+      if (planned.kind != study::PageKind::ranking) continue;
+      ++answers.at(planned.page);
+      for (std::size_t slot = 0; slot < planned.slots.size(); ++slot)
+        ++cells[planned.page][planned.slots[slot]][slot];
     }
   }
   auto list = json::array();
   for (std::size_t i = 0; i < answers.size(); ++i)
-    list.push_back({{"page", i}, {"scene", study.pages[i].scene}, {"answers", answers[i]}});
+    list.push_back({{"page", i},
+                    {"id", study.pages[i].id},
+                    {"scene", study.pages[i].scene},
+                    {"answers", answers[i]},
+                    {"cells", cells_of(study.pages[i], cells[i])}});
   return list;
 }
 
 json body_of(Service& service, const storage::StudyRecord& record) {
   json body = summary_of(service, record);
-  body["progress"] = {{"pictures", record.pictures_done},
-                      {"pictures_total", record.pictures_total},
-                      {"error", record.error}};
+  body["progress"] = progress_body(record);
+  body["seed"] = record.seed;
+  body["grace_minutes"] = study::parse_study(record.document).grace_minutes;
   body["document"] = record.document;
   body["scenes"] = answers_per_page(service, record);
   return body;
 }
 
+/// The version that the query names, otherwise the current one.
 storage::StudyRecord study_at(Call& call) {
-  const auto record = call.service.studies.latest(call.path.at("id"));
+  const auto& id = call.path.at("id");
+  const int version = static_cast<int>(number_in_query(call.request, "version", 1, 1e6, 0));
+  const auto record =
+      version > 0 ? call.service.studies.find(id, version) : call.service.studies.current(id);
   if (!record) throw nothing_here();
   return *record;
+}
+
+/// What a call that changed a version returns.
+void send_version(Call& call, int state, int version) {
+  send_json(call.response, state,
+            body_of(call.service, *call.service.studies.find(call.path.at("id"), version)));
 }
 
 void list_studies(Call& call) {
@@ -83,12 +139,68 @@ void list_studies(Call& call) {
   send_json(call.response, 200, {{"studies", list}});
 }
 
-void post_study(Call& call) {
-  const auto study = study::parse_study(call.json());
+/// Where in the document a picture's request comes from.
+std::string picture_path(const study::Study& study, const std::string& page,
+                         const json& page_document, std::size_t picture) {
+  const bool own = page_document.contains("techniques");
+  const auto& list = own ? page_document.at("techniques") : study.document.at("techniques");
+  if (picture >= list.size()) return page + ".reference";
+  return (own ? page + "." : "") + "techniques[" + std::to_string(picture) + "]";
+}
+
+/// Asks for every picture of a page whether it could be drawn.
+void check_pictures(RenderService& renders, const study::Study& study, const study::Page& page,
+                    const std::string& path, const json& document, study::FaultList& faults) {
+  const auto requests = study::page_renders(study, page).pictures;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    try {
+      renders.check(requests[i]);
+    } catch (const Error& error) {
+      if (error.code != "bad_value" && error.code != "not_found" && error.code != "unsupported")
+        throw;
+      auto field = picture_path(study, path, document, i);
+      if (error.field == "scene" || error.field == "camera")
+        field = path + "." + error.field;
+      else if (requests[i].contains(error.field) && error.field != "technique")
+        field = "picture." + error.field;
+      else if (error.field != "technique" && !error.field.empty())
+        field += ".parameters." + error.field;
+      faults.add(bad_value(field, error.what()));
+    }
+  }
+}
+
+/// Everything that is wrong with a study, its scenes, cameras, techniques and parameters included.
+study::Study checked_study(Call& call) {
+  auto study = study::parse_study(call.json());
+  study::FaultList faults;
+  const auto& document = study.document;
+  for (std::size_t i = 0; i < study.pages.size(); ++i)
+    check_pictures(*call.service.renders, study, study.pages[i], "pages[" + std::to_string(i) + "]",
+                   document.at("pages")[i], faults);
+  if (study.practice)
+    check_pictures(*call.service.renders, study, study.practice->page, "practice",
+                   document.at("practice"), faults);
+  faults.throw_if_any();
+  return study;
+}
+
+void send_faults(Call& call, const study::StudyFaults& faults) {
+  auto body = error_body(faults);
+  for (const auto& fault : faults.all)
+    body["error"]["errors"].push_back({{"field", fault.field}, {"message", fault.what()}});
+  send_json(call.response, 400, body);
+}
+
+void post_study(Call& call) try {
+  const auto study = checked_study(call);
   const auto record =
       call.service.studies.put_draft(study.id, study.document, random_seed(), utc_now());
   call.response.set_header("Location", "/api/v1/studies/" + record.id);
-  send_json(call.response, 201, body_of(call.service, record));
+  // A document that was published already is no new version.
+  send_json(call.response, record.status == "draft" ? 201 : 200, body_of(call.service, record));
+} catch (const study::StudyFaults& faults) {
+  send_faults(call, faults);
 }
 
 void get_study(Call& call) {
@@ -96,71 +208,49 @@ void get_study(Call& call) {
 }
 
 void publish_study(Call& call) {
-  const auto record = study_at(call);
+  const auto draft = call.service.studies.draft(call.path.at("id"));
+  const auto record = draft ? *draft : study_at(call);
   if (record.status == "closed")
-    throw Error("conflict", "the study is closed; store a new version first", "status");
+    throw Error("conflict", "the study is closed; open it again, or store a new version first",
+                "status");
   if (record.status == "draft") call.service.publisher.publish(record);
   if (record.status == "publishing") call.service.publisher.resume(record);
-  send_json(call.response, record.status == "open" ? 200 : 202,
-            body_of(call.service, study_at(call)));
+  send_version(call, record.status == "open" ? 200 : 202, record.version);
 }
 
 void close_study(Call& call) {
-  const auto record = study_at(call);
+  const auto open = call.service.studies.open_version(call.path.at("id"));
+  const auto record = open ? *open : study_at(call);
   if (record.status != "closed") call.service.studies.close(record.id, utc_now());
-  send_json(call.response, 200, body_of(call.service, study_at(call)));
+  send_version(call, 200, record.version);
 }
 
-/// Flags by pseudonym.
-std::map<std::string, json> flags_by_participant(const json& flags) {
-  std::map<std::string, json> by_participant;
-  for (const auto& flag : flags) {
-    auto& list = by_participant[flag.at("participant").get<std::string>()];
-    if (list.is_null()) list = json::array();
-    list.push_back(flag);
+void reopen_study(Call& call) {
+  const auto& id = call.path.at("id");
+  const bool chosen = call.request.has_param("version");
+  const auto newest = call.service.studies.latest_published(id);
+  const auto record = chosen || !newest ? study_at(call) : *newest;
+  call.service.studies.reopen(id, record.version);
+  send_version(call, 200, record.version);
+}
+
+void delete_draft(Call& call) {
+  const auto draft = call.service.studies.draft(call.path.at("id"));
+  if (!draft) {
+    study_at(call);
+    throw Error("conflict", "the study has no draft", "status");
   }
-  return by_participant;
+  call.service.studies.remove_draft(draft->id, draft->version);
+  call.response.status = 204;
 }
 
-void list_participants(Call& call) {
-  const auto frozen = published_at(call);
-  const auto flags = flags_by_participant(study::screening_flags(
-      rows_of(call.service.participants, *frozen), frozen->study.analysis.screening));
-  auto list = json::array();
-  call.service.participants.each(
-      frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
-        const auto found = flags.find(person.participant.pseudonym);
-        list.push_back(participant_body(*frozen, person,
-                                        found == flags.end() ? json::array() : found->second));
-      });
-  send_json(call.response, 200, {{"participants", list}});
-}
-
-void put_exclusion(Call& call) {
-  const json body = call.json();
-  check_keys(body, {"excluded", "reason"});
-  if (!body.contains("excluded") || !body["excluded"].is_boolean())
-    throw bad_value("excluded", "must be true or false");
-  if (!body.contains("reason") || !body["reason"].is_string() ||
-      body["reason"].get_ref<const std::string&>().size() > 1000)
-    throw bad_value("reason", "must be a text of at most 1000 bytes");
-  const auto frozen = published_at(call);
-  const auto& pseudonym = call.path.at("pseudonym");
-  if (!call.service.participants.exclude(frozen->study.id, pseudonym,
-                                         {body["excluded"], body["reason"], utc_now()}))
-    throw nothing_here();
-  const auto flags = flags_by_participant(study::screening_flags(
-      rows_of(call.service.participants, *frozen), frozen->study.analysis.screening));
-  json changed;
-  call.service.participants.each(
-      frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
-        if (person.participant.pseudonym != pseudonym) return;
-        const auto found = flags.find(pseudonym);
-        changed =
-            participant_body(*frozen, person, found == flags.end() ? json::array() : found->second);
-      });
-  if (changed.is_null()) throw nothing_here();
-  send_json(call.response, 200, changed);
+/// The study file, to be kept, changed and stored again.
+void get_document(Call& call) {
+  const auto record = study_at(call);
+  call.response.status = 200;
+  call.response.set_header("Content-Disposition",
+                           "attachment; filename=\"" + record.id + ".json\"");
+  call.response.set_content(scenes::json_text(record.document, 2) + "\n", "application/json");
 }
 
 }  // namespace
@@ -172,29 +262,8 @@ std::shared_ptr<const FrozenStudy> published_at(Call& call) {
                                   : call.service.studies.latest_published(id);
   if (record && (record->status == "open" || record->status == "closed"))
     return call.service.frozen.of(*record);
-  if (!call.service.studies.latest(id)) throw nothing_here();
+  if (!call.service.studies.current(id)) throw nothing_here();
   throw Error("conflict", "the study was not published yet", "status");
-}
-
-json participant_body(const FrozenStudy& frozen, const storage::ParticipantData& person,
-                      const json& flags) {
-  const auto& who = person.participant;
-  auto history = json::array();
-  for (const auto& decision : person.exclusions)
-    history.push_back({{"excluded", decision.excluded},
-                       {"reason", decision.reason},
-                       {"at", decision.decided_at}});
-  return {{"participant", who.pseudonym},
-          {"entered_at", who.entered_at},
-          {"completed_at", who.completed_at.empty() ? json(nullptr) : json(who.completed_at)},
-          {"answered", person.answers.size()},
-          {"pages", frozen.plan(who.place).pages.size()},
-          {"language", who.language},
-          {"test", who.test},
-          {"excluded", person.excluded()},
-          {"exclusion_reason", person.excluded() ? person.exclusions.back().reason : ""},
-          {"flags", flags},
-          {"history", history}};
 }
 
 void add_study_routes(std::vector<Route>& table) {
@@ -206,9 +275,9 @@ void add_study_routes(std::vector<Route>& table) {
   table.push_back({"GET", one, Access::researcher, get_study});
   table.push_back({"POST", one + "/publish", Access::researcher, publish_study});
   table.push_back({"POST", one + "/close", Access::researcher, close_study});
-  table.push_back({"GET", one + "/participants", Access::researcher, list_participants});
-  table.push_back(
-      {"PUT", one + "/participants/{pseudonym}/exclusion", Access::researcher, put_exclusion});
+  table.push_back({"POST", one + "/reopen", Access::researcher, reopen_study});
+  table.push_back({"DELETE", one + "/draft", Access::researcher, delete_draft});
+  table.push_back({"GET", one + "/study.json", Access::researcher, get_document});
 }
 
 }  // namespace penumbra::server::http

@@ -2,12 +2,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
-#include <fstream>
+#include <set>
 
 #include "renderer/error.h"
 #include "scenes/json_text.h"
 #include "server/http/archive.h"
+#include "server/http/person_state.h"
+#include "server/http/piece_writer.h"
 #include "study/export_tables.h"
 #include "study/report/latex.h"
 #include "study/report/scripts.h"
@@ -20,55 +23,31 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A file that is written in large pieces.
-class PieceWriter {
- public:
-  explicit PieceWriter(const fs::path& file) : path(file), stream(file, std::ios::binary) {}
+using Pages = std::vector<std::vector<study::ResponseRow>>;
 
-  void add(const std::string& text) {
-    buffer += text;
-    if (buffer.size() > piece) flush();
-  }
-  std::string& text() {
-    if (buffer.size() > piece) flush();
-    return buffer;
-  }
-  void finish() {
-    flush();
-    stream.close();
-    if (!stream) throw Error("storage", "cannot write " + path.filename().string());
-  }
-
- private:
-  static constexpr std::size_t piece = 1 << 20;
-
-  void flush() {
-    stream.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    buffer.clear();
-  }
-
-  fs::path path;
-  std::ofstream stream;
-  std::string buffer;
-};
-
-/// Rows of one person by page, in the order of the pages.
-std::vector<std::vector<study::ResponseRow>> pages_of(const FrozenStudy& frozen,
-                                                      const storage::ParticipantData& person) {
-  std::map<int, int> replaced;
-  for (const auto& earlier : person.replaced) ++replaced[earlier.page];
-  std::vector<std::vector<study::ResponseRow>> pages;
+/// Rows of one person by page, in the order of the pages: of the answers that count, or of those
+/// that were replaced.
+Pages pages_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
+               const std::vector<storage::AnswerRecord>& answers) {
+  std::map<int, int> before;
+  const bool current = &answers == &person.answers;
+  if (current)
+    for (const auto& earlier : person.replaced) ++before[earlier.page];
+  Pages pages;
   const auto plan = frozen.plan(person.participant.place);
-  for (const auto& stored : person.answers) {
+  for (const auto& stored : answers) {
     const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
-    if (planned.kind == study::PageKind::practice) continue;
+    const int answers_before = current ? before[stored.page] : before[stored.page]++;
+    if (planned.kind == study::PageKind::practice ||
+        !study::page_of(frozen.study, planned).counted())
+      continue;
     const auto answer = study::parse_answer(stored.body, frozen.study, planned.slots.size());
     pages.push_back(study::response_rows(frozen.study, frozen.hash, person.participant.pseudonym,
                                          planned, stored.page, answer, stored.answered_at));
     auto facts = std::make_shared<study::PageFacts>();
     facts->seen = answer.observations;
     facts->participant_completed = !person.participant.completed_at.empty();
-    facts->answers_before = replaced[stored.page];
+    facts->answers_before = answers_before;
     for (auto& row : pages.back()) {
       row.included = !person.excluded();
       row.started_at = person.participant.entered_at;
@@ -96,11 +75,8 @@ json person_json(const FrozenStudy& frozen, const storage::ParticipantData& pers
     json earlier = json::array();
     for (const auto& replaced : person.replaced)
       if (replaced.page == stored.page) earlier.push_back(answer_json(replaced));
-    const char* kind = planned.kind == study::PageKind::practice ? "practice"
-                       : planned.kind == study::PageKind::repeat ? "repeat"
-                                                                 : "ranking";
     pages.push_back({{"page_index", stored.page},
-                     {"kind", kind},
+                     {"kind", study::kind_name(planned.kind)},
                      {"page", page.id},
                      {"scene", page.scene},
                      {"pictures_by_slot", pictures},
@@ -125,11 +101,15 @@ json person_json(const FrozenStudy& frozen, const storage::ParticipantData& pers
 
 study::ParticipantRow participant_row(const FrozenStudy& frozen,
                                       const storage::ParticipantData& person,
-                                      const std::string& flags) {
+                                      const study::PersonChecks& checks, const std::string& flags) {
   const auto& who = person.participant;
+  const auto outcome = outcome_of(frozen, who, person.answers);
   return {who.pseudonym,
+          who.place,
           who.entered_at,
+          who.seen_at,
           who.completed_at,
+          outcome.empty() ? "started" : outcome,
           person.answers.size(),
           frozen.plan(who.place).pages.size(),
           who.language,
@@ -138,26 +118,20 @@ study::ParticipantRow participant_row(const FrozenStudy& frozen,
           person.excluded(),
           person.excluded() ? person.exclusions.back().reason : "",
           flags,
+          checks,
           who.parameters,
           who.details};
 }
 
-/// Leaves out what statistics do not look at: it is most of a row's memory.
-void slim(study::ResponseRow& row) {
-  row.study = row.study_hash = row.preset = row.parameters_hash = {};
-  row.started_at = row.answered_at = {};
-  row.page.reset();
-}
-
-std::map<std::string, std::string> flag_names(const json& flags) {
-  std::map<std::string, std::string> names;
+/// Names of flags, each once, separated by blanks.
+std::string flag_names(const json& flags) {
+  std::string list;
   for (const auto& flag : flags) {
-    auto& list = names[flag.at("participant").get<std::string>()];
     const auto name = flag.at("flag").get<std::string>();
     if ((" " + list + " ").find(" " + name + " ") == std::string::npos)
       list += (list.empty() ? "" : " ") + name;
   }
-  return names;
+  return list;
 }
 
 std::string damaged_csv(const std::vector<storage::Damage>& damage) {
@@ -190,6 +164,8 @@ StudyExport::StudyExport(storage::Participants& participants_,
 void StudyExport::analyse() {
   if (!report.is_null()) return;
   study::statistics::Gatherer gatherer;
+  auto options = study::report_options(frozen->study);
+  const auto entries = participants.entries_by_person(frozen->study.id);
   participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
     if (person.participant.test) return;
     ++attendance.entered;
@@ -197,11 +173,85 @@ void StudyExport::analyse() {
     if (person.excluded())
       attendance.excluded.push_back(
           {person.participant.pseudonym, person.exclusions.back().reason});
-    for (const auto& page : pages_of(*frozen, person))
+    for (auto& flag : study::check_flags(frozen->study, person.participant.pseudonym,
+                                         checks_of(*frozen, person, entries)))
+      options.given_flags.push_back(std::move(flag));
+    const auto pages = pages_of(*frozen, person, person.answers);
+    evidence[person.participant.pseudonym] = evidence_of(pages);
+    for (const auto& page : pages)
       for (const auto& row : page) gatherer.add(row);
   });
-  report = study::survey_report(gatherer.finish(), study::report_options(frozen->study));
-  flags = flag_names(report.at("flags"));
+  report = study::survey_report(gatherer.finish(), options);
+  std::set<std::string> told;
+  for (auto& flag : report.at("flags")) {
+    add_evidence(flag);
+    const auto name = flag.at("participant").get<std::string>();
+    flags.try_emplace(name, json::array()).first->second.push_back(flag);
+    told.insert(name + " " + flag.at("flag").get<std::string>());
+  }
+  for (const auto& flag : flags_of_excluded(options.given_flags))
+    if (told.insert(flag.at("participant").get<std::string>() + " " +
+                    flag.at("flag").get<std::string>())
+            .second)
+      flags.try_emplace(flag.at("participant"), json::array()).first->second.push_back(flag);
+}
+
+StudyExport::InversionEvidence StudyExport::evidence_of(const Pages& pages) {
+  InversionEvidence found;
+  for (const auto& page : pages) {
+    ++found.pages;
+    const auto by_rank = [](const auto& a, const auto& b) { return a.rank < b.rank; };
+    const auto [best, worst] = std::minmax_element(page.begin(), page.end(), by_rank);
+    const auto truth = std::find_if(page.begin(), page.end(),
+                                    [](const auto& row) { return row.technique == "reference"; });
+    found.reference_last +=
+        truth != page.end() && truth->rank == worst->rank && best->rank < worst->rank ? 1 : 0;
+    found.turned_round += page.front().swapped_direction.value_or(false) ? 1 : 0;
+  }
+  return found;
+}
+
+/// Says beside a flag of inversion what else speaks for it.
+void StudyExport::add_evidence(json& flag) const {
+  const auto name = flag.at("flag").get<std::string>();
+  if (name != "inverted" && name != "page_inverted") return;
+  const auto& found = evidence.at(flag.at("participant").get<std::string>());
+  flag["evidence"] = {{"pages", found.pages},
+                      {"reference_last", found.reference_last},
+                      {"turned_round", found.turned_round}};
+}
+
+/// Statistics leave people aside who were taken out; their flags are the reasons for that and stay.
+/// The given flags are of people without counted pages as well.
+json StudyExport::flags_of_excluded(const std::vector<study::GivenFlag>& given) {
+  auto list = json::array();
+  std::set<std::string> excluded;
+  for (const auto& one : attendance.excluded) excluded.insert(one.participant);
+  if (!excluded.empty()) {
+    study::statistics::Gatherer everybody;
+    participants.each(frozen->study.id, frozen->version,
+                      [&](const storage::ParticipantData& person) {
+                        if (person.participant.test) return;
+                        for (auto& page : pages_of(*frozen, person, person.answers))
+                          for (auto& row : page) {
+                            row.included = true;
+                            everybody.add(row);
+                          }
+                      });
+    for (const auto& flag :
+         study::screening_flags(everybody.finish(), frozen->study.analysis.screening))
+      if (excluded.contains(flag.at("participant").get<std::string>())) {
+        list.push_back(flag);
+        add_evidence(list.back());
+      }
+  }
+  for (const auto& flag : given) list.push_back(study::flag_json(flag));
+  return list;
+}
+
+const std::map<std::string, json>& StudyExport::flags_by_participant() {
+  analyse();
+  return flags;
 }
 
 const json& StudyExport::results() {
@@ -216,10 +266,10 @@ study::ReportContext StudyExport::report_context() {
 
 void StudyExport::each(const TakePerson& take) {
   participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
-    auto pages = person.participant.test ? std::vector<std::vector<study::ResponseRow>>{}
-                                         : pages_of(*frozen, person);
+    const bool test = person.participant.test;
+    auto pages = test ? Pages{} : pages_of(*frozen, person, person.answers);
     for (auto& page : pages)
-      for (auto& row : page) row.flags = flags[row.participant];
+      for (auto& row : page) row.flags = flag_names(flags[row.participant]);
     take(person, pages);
   });
 }
@@ -239,11 +289,13 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
                                 const std::vector<storage::Damage>& damage) {
   analyse();
   const TemporaryFile responses_file(work, ".csv");
+  const TemporaryFile earlier_file(work, ".csv");
   const TemporaryFile wide_file(work, ".csv");
   const TemporaryFile pairs_file(work, ".csv");
   const TemporaryFile participants_file(work, ".csv");
   const TemporaryFile json_file(work, ".json");
   PieceWriter responses(responses_file.path());
+  PieceWriter earlier(earlier_file.path());
   PieceWriter wide(wide_file.path());
   PieceWriter pairs(pairs_file.path());
   PieceWriter people(participants_file.path());
@@ -253,7 +305,9 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   study::PairsTable pairs_table;
   const study::WideTable wide_table(frozen->study);
   const study::ParticipantsTable people_table(frozen->study);
+  const auto entries = participants.entries_by_person(frozen->study.id);
   responses.add(study::response_header());
+  earlier.add(study::response_header());
   wide.add(wide_table.header());
   pairs.add(study::PairsTable::header());
   people.add(people_table.header());
@@ -261,7 +315,8 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
                 ", \"study_hash\": " + json(frozen->hash).dump() + ", \"participants\": [");
   bool first = true;
   each([&](const storage::ParticipantData& person, const auto& pages) {
-    people_table.append(participant_row(*frozen, person, flags[person.participant.pseudonym]),
+    people_table.append(participant_row(*frozen, person, checks_of(*frozen, person, entries),
+                                        flag_names(flags[person.participant.pseudonym])),
                         people.text());
     if (person.participant.test) return;
     documents.add((first ? "\n" : ",\n") + scenes::json_text(person_json(*frozen, person)));
@@ -273,9 +328,12 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
       all.insert(all.end(), page.begin(), page.end());
     }
     wide_table.append(all, wide.text());
+    for (const auto& page : pages_of(*frozen, person, person.replaced))
+      for (const auto& row : page) study::append_response(row, earlier.text());
   });
   documents.add("\n]}\n");
-  for (PieceWriter* writer : {&responses, &wide, &pairs, &people, &documents}) writer->finish();
+  for (PieceWriter* writer : {&responses, &earlier, &wide, &pairs, &people, &documents})
+    writer->finish();
 
   // Put everything into the archive.
   const auto options = study::report_options(frozen->study);
@@ -286,6 +344,7 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   zip.add_text("results.tex", study::latex_tables(report, options.labels));
   zip.add_text("tables.txt", study::statistics_table(report, options));
   zip.add_file("responses.csv", responses_file.path());
+  zip.add_file("earlier_responses.csv", earlier_file.path());
   zip.add_file("responses_wide.csv", wide_file.path());
   zip.add_file("pairs.csv", pairs_file.path());
   zip.add_file("participants.csv", participants_file.path());
@@ -302,18 +361,12 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   zip.finish();
 }
 
-std::vector<study::ResponseRow> rows_of(storage::Participants& participants,
-                                        const FrozenStudy& frozen) {
-  std::vector<study::ResponseRow> rows;
-  participants.each(frozen.study.id, frozen.version, [&](const storage::ParticipantData& person) {
-    if (person.participant.test) return;
-    for (auto& page : pages_of(frozen, person))
-      for (auto& row : page) {
-        slim(row);
-        rows.push_back(std::move(row));
-      }
-  });
-  return rows;
+study::PersonChecks checks_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
+                              const std::map<std::string, int>& entries) {
+  auto checks = checks_of(frozen, person.participant, person.answers);
+  const auto found = entries.find(person.participant.person_id);
+  if (found != entries.end()) checks.entries = found->second;
+  return checks;
 }
 
 }  // namespace penumbra::server::http

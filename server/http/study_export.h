@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "server/http/frozen_study.h"
 #include "server/storage/participants.h"
+#include "study/checks.h"
 #include "study/report/html.h"
 #include "study/responses.h"
 
@@ -38,9 +40,11 @@ class StudyExport {
 
   /// The statistics; computed when first asked for.
   const nlohmann::json& results();
+  /// Flags by pseudonym, also of people who were taken out.
+  const std::map<std::string, nlohmann::json>& flags_by_participant();
   study::ReportContext report_context();
 
-  /// responses.csv, practice pages and previews left out.
+  /// responses.csv, attention items, practice pages and previews left out.
   void write_responses(const std::filesystem::path& file);
 
   /// export.zip, with parts in `work`, a folder on the same disk, while it is made. What is left
@@ -54,17 +58,27 @@ class StudyExport {
 
   void analyse();
   void each(const TakePerson& take);
+  void add_evidence(nlohmann::json& flag) const;
+  nlohmann::json flags_of_excluded(const std::vector<study::GivenFlag>& given);
 
   storage::Participants& participants;
   std::shared_ptr<const FrozenStudy> frozen;
   nlohmann::json report;
-  std::map<std::string, std::string> flags;  ///< names by pseudonym, separated by blanks
+  std::map<std::string, nlohmann::json> flags;  ///< lists by pseudonym
+  /// What speaks for or against a scale that was read backwards, beside the flag itself.
+  struct InversionEvidence {
+    int pages = 0;
+    int reference_last = 0;  ///< pages on which the true picture has the worst place
+    int turned_round = 0;    ///< pages on which the order was turned round before it was sent
+  };
+  static InversionEvidence evidence_of(const std::vector<std::vector<study::ResponseRow>>& pages);
+
+  std::map<std::string, InversionEvidence> evidence;  ///< by pseudonym
   study::Attendance attendance;
 };
 
-/// All rows of a version, with exclusions filled in; practice pages and previews left out, and
-/// everything that statistics do not need.
-std::vector<study::ResponseRow> rows_of(storage::Participants& participants,
-                                        const FrozenStudy& frozen);
+/// Checks of a person, with how often the same name entered the study.
+study::PersonChecks checks_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
+                              const std::map<std::string, int>& entries);
 
 }  // namespace penumbra::server::http

@@ -100,6 +100,10 @@ std::set<std::string> QueuedRenderService::missing(const std::string& id,
   return lacking;
 }
 
+void QueuedRenderService::check(const json& request) {
+  read_request(request, context_);
+}
+
 RenderRecord QueuedRenderService::submit(const json& request, const Submitter& who) {
   CanonicalRequest canonical = read_request(request, context_);
   std::set<std::string> wants{want::image};

@@ -24,6 +24,7 @@ class QueuedRenderService : public RenderService {
   explicit QueuedRenderService(const RenderServiceOptions& options);
   ~QueuedRenderService() override;
 
+  void check(const nlohmann::json& request) override;
   RenderRecord submit(const nlohmann::json& request, const Submitter& who) override;
   std::optional<RenderRecord> find(const std::string& id) override;
   std::optional<RenderRecord> wait(const std::string& id, double seconds) override;

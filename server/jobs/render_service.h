@@ -63,6 +63,9 @@ class RenderService {
   /// returns the record: done if cached, shared if the same request is already in flight.
   virtual RenderRecord submit(const nlohmann::json& request, const Submitter& who = {}) = 0;
 
+  /// Throws what `submit` would for a request that says something wrong; draws nothing.
+  virtual void check(const nlohmann::json& request) = 0;
+
   /// As it stands now; empty for an unknown id.
   virtual std::optional<RenderRecord> find(const std::string& id) = 0;
 

@@ -4,7 +4,8 @@ namespace penumbra::server::storage {
 
 const char* const participant_columns =
     "id, pseudonym, study, version, place, test, token, withdrawal_code, enrolment_id, language, "
-    "consent_version, parameters, details, entered_at, completed_at, intact";
+    "consent_version, parameters, details, entered_at, completed_at, person_id, "
+    "seen_at, intact";
 
 Error damaged_row() {
   return {"storage", "what is stored here is damaged"};
@@ -16,7 +17,7 @@ void report_row(Database& database, SQLite::Database& connection, const std::str
 }
 
 std::optional<ParticipantRecord> participant_of_row(Database& database, SQLite::Statement& row) {
-  if (row.getColumn(15).getInt() == 0) {
+  if (row.getColumn(17).getInt() == 0) {
     database.report(
         {"participants", row.getColumn(0).getInt64(), row.getColumn(1).getString(), unfit});
     return std::nullopt;
@@ -37,6 +38,8 @@ std::optional<ParticipantRecord> participant_of_row(Database& database, SQLite::
   record.details = nlohmann::json::parse(row.getColumn(12).getString());
   record.entered_at = row.getColumn(13).getString();
   if (!row.getColumn(14).isNull()) record.completed_at = row.getColumn(14).getString();
+  if (!row.getColumn(15).isNull()) record.person_id = row.getColumn(15).getString();
+  record.seen_at = row.getColumn(16).getString();
   return record;
 }
 

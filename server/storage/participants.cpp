@@ -30,23 +30,41 @@ std::size_t next_place(SQLite::Database& connection, const ParticipantRecord& fr
   return static_cast<std::size_t>(query.getColumn(0).getInt64());
 }
 
+bool quota_reached(SQLite::Database& connection, const std::string& study, int version,
+                   std::uint32_t quota) {
+  if (quota == 0) return false;
+  SQLite::Statement completed(connection,
+                              "SELECT COUNT(*) FROM participants WHERE study = ? AND version = ? "
+                              "AND test = 0 AND completed_at IS NOT NULL");
+  completed.bind(1, study);
+  completed.bind(2, version);
+  completed.executeStep();
+  return completed.getColumn(0).getInt64() >= quota;
+}
+
 void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fresh,
-                     std::uint32_t quota) {
+                     std::uint32_t quota, bool once) {
   SQLite::Statement status(connection,
                            "SELECT status FROM studies WHERE study = ? AND version = ?");
   status.bind(1, fresh.study);
   status.bind(2, fresh.version);
-  if (!status.executeStep() || status.getColumn(0).getString() != "open")
+  const bool there = status.executeStep();
+  if (there && fresh.test) return;
+  if (!there || status.getColumn(0).getString() != "open")
     throw Error("conflict", "the study is not open", "study");
-  if (quota == 0 || fresh.test) return;
-  SQLite::Statement completed(connection,
-                              "SELECT COUNT(*) FROM participants WHERE study = ? AND version = ? "
-                              "AND test = 0 AND completed_at IS NOT NULL");
-  completed.bind(1, fresh.study);
-  completed.bind(2, fresh.version);
-  completed.executeStep();
-  if (completed.getColumn(0).getInt64() >= quota)
+  if (quota_reached(connection, fresh.study, fresh.version, quota))
     throw Error("conflict", "the study has as many participants as it needs", "study");
+  if (!once || fresh.person_id.empty()) return;
+  SQLite::Statement same(connection,
+                         "SELECT 1 FROM participants WHERE study = ? AND person_id = ? AND "
+                         "test = 0 LIMIT 1");
+  same.bind(1, fresh.study);
+  same.bind(2, fresh.person_id);
+  if (same.executeStep())
+    throw Error("conflict",
+                "somebody has entered with this link already; open it in the browser in which you "
+                "began",
+                "parameters");
 }
 
 /// Place of the new person, taken away from whoever left it.
@@ -113,22 +131,19 @@ std::vector<Exclusion> exclusions_of(Database& database, SQLite::Database& conne
   return found;
 }
 
-/// Throws where the person may not answer any more. Who was amid a version when the next one opened
-/// may finish it.
-void check_answerable(Connection& connection, const ParticipantRecord& participant) {
+/// Throws where the person may not answer any more.
+void check_answerable(Connection& connection, const ParticipantRecord& participant,
+                      const std::string& closed_before) {
   auto query = connection.query(
-      "SELECT p.completed_at IS NOT NULL, s.status, EXISTS (SELECT 1 FROM studies AS n "
-      "WHERE n.study = s.study AND n.version > s.version AND n.status = 'open' AND "
-      "n.opened_at = s.closed_at) "
+      "SELECT p.completed_at IS NOT NULL, s.status = 'closed' AND s.closed_at < ?2 "
       "FROM participants AS p JOIN studies AS s ON s.study = p.study AND s.version = p.version "
-      "WHERE p.id = ?");
+      "WHERE p.id = ?1");
   query->bind(1, participant.key);
+  query->bind(2, closed_before);
   if (!query->executeStep()) throw not_found("participant", "there is nothing at this address");
   if (query->getColumn(0).getInt() != 0)
     throw Error("conflict", "the study was completed already", "participant");
-  const bool superseded = query->getColumn(2).getInt() != 0;
-  if (query->getColumn(1).getString() != "open" && !superseded)
-    throw Error("conflict", "the study is closed", "study");
+  if (query->getColumn(1).getInt() != 0) throw Error("conflict", "the study is closed", "study");
 }
 
 /// Takes the mark from the page's current answer and answers its id, empty where there is none.
@@ -159,19 +174,20 @@ int pages_answered(Connection& connection, std::int64_t participant) {
 }  // namespace
 
 ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint32_t quota,
-                                      const std::string& abandoned_before) {
+                                      const std::string& abandoned_before, bool once) {
   return database.write([&](Connection& connection) {
     if (const auto known = find_where(database, connection, "study = ? AND enrolment_id = ?",
                                       fresh.study, fresh.enrolment_id))
       return *known;
-    check_enrolment(connection, fresh, quota);
+    check_enrolment(connection, fresh, quota, once);
     ParticipantRecord record = fresh;
     record.place = take_place(connection, fresh, abandoned_before);
     SQLite::Statement insert(
         connection,
         "INSERT INTO participants (pseudonym, study, version, place, holds_place, test, token, "
         "token_hash, withdrawal_code, enrolment_id, language, consent_version, parameters, "
-        "details, entered_at, seen_at) VALUES (?, ?, ?, ?, 1, ?, ?, ?, ?, ?, ?, ?, ?, '{}', ?, ?)");
+        "details, entered_at, seen_at, person_id) VALUES (?, ?, ?, ?, 1, ?, ?, ?, ?, ?, ?, ?, ?, "
+        "'{}', ?, ?, NULLIF(?, ''))");
     int next = 1;
     insert.bind(next++, record.pseudonym);
     insert.bind(next++, record.study);
@@ -187,6 +203,7 @@ ParticipantRecord Participants::enrol(const ParticipantRecord& fresh, std::uint3
     insert.bind(next++, record.parameters.dump());
     insert.bind(next++, record.entered_at);
     insert.bind(next++, record.entered_at);
+    insert.bind(next++, record.person_id);
     insert.exec();
     record.key = connection.getLastInsertRowid();
     return record;
@@ -207,7 +224,8 @@ std::vector<AnswerRecord> Participants::answers(std::int64_t participant) {
 nlohmann::json Participants::answer(
     const ParticipantRecord& participant, const AnswerRecord& fresh,
     const std::function<bool(const nlohmann::json&)>& same,
-    const std::function<nlohmann::json(const std::string&, int)>& make_reply) {
+    const std::function<nlohmann::json(const std::string&, int)>& make_reply,
+    const std::string& closed_before) {
   return database.write([&](Connection& connection) {
     auto known = connection.query(
         "SELECT page, body, reply, intact FROM checked_answers "
@@ -222,7 +240,7 @@ nlohmann::json Participants::answer(
         throw Error("conflict", "another answer was stored under this id", "answer_id");
       return nlohmann::json::parse(known->getColumn(2).getString());
     }
-    check_answerable(connection, participant);
+    check_answerable(connection, participant, closed_before);
     const auto replaced = retire_current(connection, participant.key, fresh.page);
     const auto reply = make_reply(replaced, pages_answered(connection, participant.key) + 1);
     auto insert = connection.query(
@@ -262,9 +280,26 @@ void Participants::complete(const ParticipantRecord& participant, int pages,
         "UPDATE participants SET completed_at = ?, seen_at = ?, details = ? WHERE id = ?");
     update.bind(1, now);
     update.bind(2, now);
-    update.bind(3, details.dump());
+    auto all = participant.details;
+    all.update(details);
+    update.bind(3, all.dump());
     update.bind(4, participant.key);
     update.exec();
+  });
+}
+
+ParticipantRecord Participants::note_details(const ParticipantRecord& participant,
+                                             const nlohmann::json& details) {
+  return database.write([&](Connection& connection) {
+    auto record = find_where(database, connection, "token_hash = ?", sha256(participant.token));
+    if (!record) throw not_found("participant", "there is nothing at this address");
+    if (!record->completed_at.empty()) return *record;
+    record->details.update(details);
+    SQLite::Statement update(connection, "UPDATE participants SET details = ? WHERE id = ?");
+    update.bind(1, record->details.dump());
+    update.bind(2, record->key);
+    update.exec();
+    return *record;
   });
 }
 
@@ -341,25 +376,9 @@ void Participants::each(const std::string& study, int version,
   }
 }
 
-std::vector<Participants::Progress> Participants::progress(const std::string& study, int version) {
-  return database.read([&](Connection& connection) {
-    SQLite::Statement query(connection,
-                            "SELECT p.id, p.place, a.page FROM participants AS p JOIN answers AS a "
-                            "ON a.participant = p.id WHERE p.study = ? AND p.version = ? AND "
-                            "p.test = 0 AND a.is_current = 1 ORDER BY p.id, a.page");
-    query.bind(1, study);
-    query.bind(2, version);
-    std::vector<Progress> found;
-    std::int64_t person = -1;
-    while (query.executeStep()) {
-      if (query.getColumn(0).getInt64() != person) {
-        person = query.getColumn(0).getInt64();
-        found.push_back({static_cast<std::size_t>(query.getColumn(1).getInt64()), {}});
-      }
-      found.back().pages.push_back(query.getColumn(2).getInt());
-    }
-    return found;
-  });
+bool Participants::is_full(const std::string& study, int version, std::uint32_t quota) {
+  return database.read(
+      [&](Connection& connection) { return quota_reached(connection, study, version, quota); });
 }
 
 }  // namespace penumbra::server::storage

@@ -26,9 +26,11 @@ struct ParticipantRecord {
   std::string language;
   std::string consent_version;
   nlohmann::json parameters = nlohmann::json::object();  ///< of the link
-  nlohmann::json details = nlohmann::json::object();     ///< about the person, given at the end
+  std::string person_id;  ///< of the link; empty where the study asks for none
+  nlohmann::json details = nlohmann::json::object();  ///< about the person, given at the end
   std::string entered_at;
   std::string completed_at;  ///< empty until completed
+  std::string seen_at;       ///< last answer, or entry
 };
 
 struct AnswerRecord {
@@ -62,10 +64,10 @@ class Participants {
   /// Enrols a person; `fresh` brings everything but key and place. The same enrolment_id in the
   /// same study again answers the person stored first. The place is study::next_place; a place is
   /// given away when its holder has not completed and was not seen since `abandoned_before`.
-  /// Throws `conflict` where the version is not open (tests may enter any version that is), or
-  /// `quota` people (0: no limit) have completed.
+  /// Throws `conflict` where the version is not open (tests may enter drafts as well), `quota`
+  /// people (0: no limit) have completed, or with `once` the person_id has entered any version.
   ParticipantRecord enrol(const ParticipantRecord& fresh, std::uint32_t quota,
-                          const std::string& abandoned_before);
+                          const std::string& abandoned_before, bool once = false);
 
   std::optional<ParticipantRecord> find(const std::string& token);
 
@@ -75,16 +77,22 @@ class Participants {
   /// Stores an answer and answers the reply that is stored with it. The same answer_id again gets
   /// the reply stored first if `same(stored body)` says that the content is equal, else `conflict`.
   /// A new answer_id replaces the page's current answer, which stays as history. Throws `conflict`
-  /// after completion and where the study is closed. `make_reply` gets the answer_id of the answer
-  /// replaced (empty: none) and the number of pages answered now.
+  /// after completion and where the version was closed before `closed_before`: people who were amid
+  /// it have a while to finish. `make_reply` gets the answer_id of the answer replaced (empty:
+  /// none) and the number of pages answered now.
   nlohmann::json answer(const ParticipantRecord& participant, const AnswerRecord& fresh,
                         const std::function<bool(const nlohmann::json&)>& same,
-                        const std::function<nlohmann::json(const std::string&, int)>& make_reply);
+                        const std::function<nlohmann::json(const std::string&, int)>& make_reply,
+                        const std::string& closed_before = {});
 
   /// Marks as completed once all `pages` have an answer (else `conflict`), with details about the
-  /// person. Repeating changes nothing.
+  /// person added to those noted before. Repeating changes nothing.
   void complete(const ParticipantRecord& participant, int pages, const nlohmann::json& details,
                 const std::string& now);
+
+  /// Adds to what is known about a person who has not completed; returns the person as stored now.
+  ParticipantRecord note_details(const ParticipantRecord& participant,
+                                 const nlohmann::json& details);
 
   /// Deletes the person who holds the code, with all answers; false where nobody does.
   bool withdraw(const std::string& code, const std::string& now);
@@ -104,6 +112,13 @@ class Participants {
     std::vector<int> pages;
   };
   std::vector<Progress> progress(const std::string& study, int version);
+
+  /// Whether `quota` people (0: no limit) have completed the version.
+  bool is_full(const std::string& study, int version, std::uint32_t quota);
+
+  /// How often each person_id entered a study, in all its versions; those that did so once are left
+  /// out.
+  std::map<std::string, int> entries_by_person(const std::string& study);
 
  private:
   Database& database;

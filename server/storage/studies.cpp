@@ -7,7 +7,11 @@ namespace {
 
 constexpr const char* columns =
     "study, version, status, document, hash, seed, pictures_done, pictures_total, error, "
-    "created_at, intact, row";
+    "created_at, opened_at, closed_at, intact, row";
+
+/// First the version that `current` returns.
+constexpr const char* current_first =
+    "CASE status WHEN 'publishing' THEN 0 WHEN 'open' THEN 1 ELSE 2 END, version DESC";
 
 std::string select(const std::string& condition) {
   return std::string("SELECT ") + columns + " FROM checked_studies " + condition;
@@ -15,8 +19,8 @@ std::string select(const std::string& condition) {
 
 /// Throws Error `storage` where the row is damaged, which is reported.
 StudyRecord record_of(Database& database, SQLite::Statement& row) {
-  if (row.getColumn(10).getInt() == 0) {
-    database.report({"studies", row.getColumn(11).getInt64(), "", unfit});
+  if (row.getColumn(12).getInt() == 0) {
+    database.report({"studies", row.getColumn(13).getInt64(), "", unfit});
     throw Error("storage", "the study is damaged; restore a backup");
   }
   StudyRecord record;
@@ -31,6 +35,8 @@ StudyRecord record_of(Database& database, SQLite::Statement& row) {
   if (!row.getColumn(8).isNull())
     record.error = nlohmann::json::parse(row.getColumn(8).getString());
   record.created_at = row.getColumn(9).getString();
+  if (!row.getColumn(10).isNull()) record.opened_at = row.getColumn(10).getString();
+  if (!row.getColumn(11).isNull()) record.closed_at = row.getColumn(11).getString();
   return record;
 }
 
@@ -56,16 +62,30 @@ void change_one(SQLite::Statement& statement, const std::string& otherwise) {
   if (statement.exec() != 1) throw Error("conflict", otherwise, "status");
 }
 
+/// A draft goes with what researchers answered while looking at it.
+void remove_version(SQLite::Database& connection, const std::string& id, int version) {
+  for (const char* table : {"participants", "studies"}) {
+    SQLite::Statement drop(
+        connection, std::string("DELETE FROM ") + table + " WHERE study = ? AND version = ?");
+    drop.bind(1, id);
+    drop.bind(2, version);
+    drop.exec();
+  }
+}
+
 }  // namespace
 
 StudyRecord Studies::put_draft(const std::string& id, const nlohmann::json& document,
                                std::uint64_t seed, const std::string& now) {
   return database.write([&](SQLite::Database& connection) {
-    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
+    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC"));
     query.bind(1, id);
-    const auto present = first(database, query);
+    const auto known = all(database, query);
+    const auto* present = known.empty() ? nullptr : &known.front();
     if (present && present->status == "publishing")
       throw Error("conflict", "study " + id + " is being published", "status");
+    for (const auto& version : known)
+      if (version.document == document) return version;
     StudyRecord record;
     record.id = id;
     record.status = "draft";
@@ -73,12 +93,7 @@ StudyRecord Studies::put_draft(const std::string& id, const nlohmann::json& docu
     record.seed = seed;
     record.created_at = now;
     if (present) record.version = present->version + (present->status == "draft" ? 0 : 1);
-    if (present && present->status == "draft") {
-      SQLite::Statement drop(connection, "DELETE FROM studies WHERE study = ? AND version = ?");
-      drop.bind(1, id);
-      drop.bind(2, record.version);
-      drop.exec();
-    }
+    if (present && present->status == "draft") remove_version(connection, id, record.version);
     SQLite::Statement insert(connection,
                              "INSERT INTO studies (study, version, status, document, seed, "
                              "created_at) VALUES (?, ?, 'draft', ?, ?, ?)");
@@ -94,16 +109,36 @@ StudyRecord Studies::put_draft(const std::string& id, const nlohmann::json& docu
 
 std::vector<StudyRecord> Studies::list() {
   return database.read([&](SQLite::Database& connection) {
-    SQLite::Statement query(connection,
-                            select("AS s WHERE version = (SELECT MAX(version) FROM studies AS o "
-                                   "WHERE o.study = s.study) ORDER BY study"));
+    SQLite::Statement query(connection, select(std::string("ORDER BY study, ") + current_first));
+    std::vector<StudyRecord> records;
+    while (query.executeStep())
+      if (records.empty() || records.back().id != query.getColumn(0).getString())
+        records.push_back(record_of(database, query));
+    return records;
+  });
+}
+
+std::optional<StudyRecord> Studies::current(const std::string& id) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(
+        connection, select(std::string("WHERE study = ? ORDER BY ") + current_first + " LIMIT 1"));
+    query.bind(1, id);
+    return first(database, query);
+  });
+}
+
+std::vector<StudyRecord> Studies::versions(const std::string& id) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC"));
+    query.bind(1, id);
     return all(database, query);
   });
 }
 
-std::optional<StudyRecord> Studies::latest(const std::string& id) {
+std::optional<StudyRecord> Studies::draft(const std::string& id) {
   return database.read([&](SQLite::Database& connection) {
-    SQLite::Statement query(connection, select("WHERE study = ? ORDER BY version DESC LIMIT 1"));
+    SQLite::Statement query(connection,
+                            select("WHERE study = ? AND status IN ('draft', 'publishing')"));
     query.bind(1, id);
     return first(database, query);
   });
@@ -221,6 +256,31 @@ void Studies::close(const std::string& id, const std::string& now) {
     update.bind(1, now);
     update.bind(2, id);
     change_one(update, "the study is not open");
+  });
+}
+
+void Studies::reopen(const std::string& id, int version) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement update(connection,
+                             "UPDATE studies SET status = 'open', closed_at = NULL "
+                             "WHERE study = ?1 AND version = ?2 AND status = 'closed' AND NOT "
+                             "EXISTS (SELECT 1 FROM studies WHERE study = ?1 AND status = 'open')");
+    update.bind(1, id);
+    update.bind(2, version);
+    change_one(update, "only a closed version can be opened again, and none while another is open");
+  });
+}
+
+void Studies::remove_draft(const std::string& id, int version) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection, select("WHERE study = ? AND version = ?"));
+    query.bind(1, id);
+    query.bind(2, version);
+    const auto found = first(database, query);
+    if (!found || found->status != "draft")
+      throw Error("conflict", "only a draft can be deleted: people may have answered the others",
+                  "status");
+    remove_version(connection, id, version);
   });
 }
 

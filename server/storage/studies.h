@@ -23,6 +23,8 @@ struct StudyRecord {
   int pictures_total = 0;
   nlohmann::json error;  ///< null, or why the last publication failed
   std::string created_at;
+  std::string opened_at;  ///< empty until open
+  std::string closed_at;  ///< empty until closed
 };
 
 /// A picture frozen with a version.
@@ -43,14 +45,22 @@ class Studies {
  public:
   explicit Studies(Database& database_) : database(database_) {}
 
-  /// Stores the document as draft: replaces the draft there is, else starts version 1, or the
-  /// version after the last published one. Throws `conflict` while that study is being published.
+  /// Stores the document as draft: replaces the draft there is, with its previews, else starts
+  /// version 1, or the version after the last published one. A document that a version has already
+  /// changes nothing, and that version is returned. Throws `conflict` while that study is being
+  /// published.
   StudyRecord put_draft(const std::string& id, const nlohmann::json& document, std::uint64_t seed,
                         const std::string& now);
 
-  /// The latest version of each study, by id.
+  /// The version of each study that `current` returns, by id.
   std::vector<StudyRecord> list();
-  std::optional<StudyRecord> latest(const std::string& id);
+  /// The version that a study is known by: the one being published, otherwise the open one,
+  /// otherwise the latest. A draft beside an open version hides it from no one.
+  std::optional<StudyRecord> current(const std::string& id);
+  /// All versions, the latest first.
+  std::vector<StudyRecord> versions(const std::string& id);
+  /// The version that was never opened: draft or publishing.
+  std::optional<StudyRecord> draft(const std::string& id);
   std::optional<StudyRecord> find(const std::string& id, int version);
   /// The version that takes participants.
   std::optional<StudyRecord> open_version(const std::string& id);
@@ -68,6 +78,10 @@ class Studies {
   void fail_publishing(const std::string& id, int version, const nlohmann::json& error);
   /// open -> closed. Throws `conflict` where no version is open.
   void close(const std::string& id, const std::string& now);
+  /// closed -> open. Throws `conflict` where the version is not closed, or another one is open.
+  void reopen(const std::string& id, int version);
+  /// Removes a version that was never opened, and its previews. Throws `conflict` for any other.
+  void remove_draft(const std::string& id, int version);
 
   /// By the SHA-256 of the render request's JSON.
   std::map<std::string, FrozenPicture> pictures(const std::string& id, int version);

@@ -25,14 +25,29 @@ using statistics::SurveyData;
 
 json flags_json(const SurveyData& data, const std::vector<Flag>& flags) {
   json list = json::array();
-  for (const Flag& flag : flags) {
-    list.push_back({{"participant", data.participants[flag.participant]},
-                    {"flag", flag.name},
-                    {"value", flag.value},
-                    {"threshold", flag.threshold},
-                    {"reason", flag.reason}});
-  }
+  for (const Flag& flag : flags)
+    list.push_back(flag_json(
+        {data.participants[flag.participant], flag.name, flag.value, flag.threshold, flag.reason}));
   return list;
+}
+
+/// The ranks' flags, then the given ones of people who have ranks.
+std::vector<Flag> all_flags(const SurveyData& data, const ReportOptions& options) {
+  auto flags = statistics::screen(data, options.plan.screening);
+  for (const GivenFlag& given : options.given_flags) {
+    const auto& names = data.participants;
+    const auto found = std::lower_bound(names.begin(), names.end(), given.participant);
+    if (found == names.end() || *found != given.participant) continue;
+    flags.push_back({static_cast<std::size_t>(found - names.begin()),
+                     given.name,
+                     given.value,
+                     given.threshold,
+                     given.reason,
+                     {}});
+  }
+  std::stable_sort(flags.begin(), flags.end(),
+                   [](const Flag& a, const Flag& b) { return a.participant < b.participant; });
+  return flags;
 }
 
 Selection everything(const SurveyData& data) {
@@ -166,7 +181,7 @@ json statistics_report(const std::vector<ResponseRow>& rows, const ReportOptions
 }
 
 json survey_report(const SurveyData& data, const ReportOptions& options) {
-  const auto flags = statistics::screen(data, options.plan.screening);
+  const auto flags = all_flags(data, options);
   json report = {{"participants", data.participants.size()},
                  {"pages", data.pages.size()},
                  {"counts", statistics::counts_json(data, flags)},
@@ -200,9 +215,16 @@ std::string statistics_table(const json& report, const ReportOptions& options,
                    options);
 }
 
-json screening_flags(const std::vector<ResponseRow>& rows, const Screening& screening) {
-  const SurveyData data = statistics::gather(rows);
+json screening_flags(const SurveyData& data, const Screening& screening) {
   return flags_json(data, statistics::screen(data, screening));
+}
+
+json flag_json(const GivenFlag& flag) {
+  return {{"participant", flag.participant},
+          {"flag", flag.name},
+          {"value", flag.value},
+          {"threshold", flag.threshold},
+          {"reason", flag.reason}};
 }
 
 }  // namespace penumbra::study

@@ -13,6 +13,15 @@
 
 namespace penumbra::study {
 
+/// A flag for another reason than the ranks, which the study's checks give.
+struct GivenFlag {
+  std::string participant;
+  std::string name;
+  double value = 0.0;
+  double threshold = 0.0;
+  std::string reason;
+};
+
 struct ReportOptions {
   AnalysisPlan plan;
   std::map<std::string, std::string> labels;  ///< abbreviation per picture id, for the text table
@@ -20,6 +29,7 @@ struct ReportOptions {
   std::string study_hash;
   statistics::Resampling resampling;  ///< of bootstraps and permutations
   Measures measures;                  ///< of the pictures that were shown; empty: not compared
+  std::vector<GivenFlag> given_flags;
 };
 
 /// Options of a study: its analysis plan, the labels of its pictures, its id and hash.
@@ -37,7 +47,9 @@ nlohmann::json statistics_report(const std::vector<ResponseRow>& rows,
 std::string statistics_table(const nlohmann::json& report, const ReportOptions& options,
                              const std::string& set = "all");
 
-/// Flags per participant: [{"participant","flag","value","threshold","reason"}].
-nlohmann::json screening_flags(const std::vector<ResponseRow>& rows, const Screening& screening);
+/// Flags per participant: [{"participant","flag","value","threshold","reason"}], those that ranks
+/// give reason for.
+nlohmann::json screening_flags(const statistics::SurveyData& data, const Screening& screening);
+nlohmann::json flag_json(const GivenFlag& flag);
 
 }  // namespace penumbra::study

@@ -350,6 +350,7 @@ TEST_F(Survey, AChangedStudyIsANewVersionAndAClosedOneTakesNothing) {
   const auto before = json::parse(server->researcher().Get(study_at)->body);
   auto changed = small_study();
   changed["title"] = {{"en", "Other words"}};
+  changed["grace_minutes"] = 0;
   publish(*server, changed);
   const auto after = json::parse(server->researcher().Get(study_at)->body);
   ++fault.tries;

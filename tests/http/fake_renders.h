@@ -40,6 +40,17 @@ class FakeRenders : public RenderService {
     return records[record.id] = record;
   }
 
+  void check(const nlohmann::json& request) override {
+    const auto& scene = request.at("scene");
+    if (scene == "wide") throw bad_value("width", "must be from 1 to 8192");
+    if (scene == "nowhere") throw not_found("scene", "there is no such scene");
+    if (request.at("technique") == "unheard-of")
+      throw not_found("technique", "there is no such technique");
+    if (request.at("parameters").contains("sise")) throw bad_value("sise", "unknown parameter");
+    if (request.value("camera", "") == "behind")
+      throw not_found("camera", "there is no such camera");
+  }
+
   std::optional<RenderRecord> find(const std::string& id) override {
     const std::lock_guard lock(mutex);
     if (!records.contains(id)) return std::nullopt;

@@ -1,13 +1,8 @@
-#include <zip.h>
-
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <thread>
 
-#include "study/csv.h"
 #include "study/responses.h"
-#include "tests/http/running_server.h"
+#include "tests/http/a_study.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -19,75 +14,6 @@ std::string values_in(const json& value) {
   for (const auto& inner : value) text += values_in(inner);
   return text;
 }
-
-/// The study that ships, opened, and people in it.
-class AStudy : public RunningServer {
- protected:
-  const std::string id = "thesis-2007";
-  const std::string at = "/api/v1/studies/thesis-2007";
-
-  json study() { return body_of(researcher->Get(at), 200, "Study"); }
-
-  json wait_until(const std::string& study_path, const std::string& status) {
-    json body;
-    for (int i = 0; i < 200; ++i) {
-      body = body_of(researcher->Get(study_path), 200, "Study");
-      if (body["status"] == status) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    EXPECT_EQ(body["status"], status);
-    return body;
-  }
-
-  json publish() {
-    const auto result = researcher->Post(at + "/publish", "", "application/json");
-    EXPECT_TRUE(result->status == 202 || result->status == 200) << result->body;
-    return wait_until(at, "open");
-  }
-
-  json enter(const json& body = json::object()) {
-    return body_of(post(at + "/participants", body), 201, "Enrolment");
-  }
-
-  static std::string uuid(int number) {
-    const auto digits = std::to_string(number);
-    return "00000000-0000-4000-8000-" + std::string(12 - digits.size(), '0') + digits;
-  }
-
-  /// An answer that puts the pictures in the order of their slots.
-  static json answer(const json& page, int number, int difficulty = 3) {
-    json shelves;
-    for (const auto& image : page["images"])
-      shelves[std::to_string(image["slot"].get<int>())] = image["slot"];
-    return {{"answer_id", uuid(number)},
-            {"shelves", shelves},
-            {"difficulty", difficulty},
-            {"active_ms", 60000},
-            {"total_ms", 61000}};
-  }
-
-  static std::string page_of(const json& person, std::size_t page) {
-    return "/api/v1/participants/" + person["participant"].get<std::string>() + "/pages/" +
-           std::to_string(page);
-  }
-
-  httplib::Result put(const std::string& path, const json& body) {
-    return client->Put(path, body.dump(), "application/json");
-  }
-
-  void answer_all(const json& person, int first_number) {
-    for (std::size_t page = 0; page < person["pages"].size(); ++page)
-      body_of(put(page_of(person, page),
-                  answer(person["pages"][page], first_number + static_cast<int>(page))),
-              200, "AnswerReply");
-  }
-
-  httplib::Result complete(const json& person) {
-    return client->Post(
-        "/api/v1/participants/" + person["participant"].get<std::string>() + "/complete", "{}",
-        "application/json");
-  }
-};
 
 TEST_F(AStudy, ShipsAsDraftThatNobodyElseSees) {
   const auto list = body_of(researcher->Get("/api/v1/studies"), 200, "StudyList")["studies"];
@@ -136,6 +62,45 @@ TEST_F(AStudy, WithMistakesIsRefusedNamingTheField) {
   const auto result = researcher->Post("/api/v1/studies", document.dump(), "application/json");
   EXPECT_EQ(error_of(result, 400), "bad_value");
   EXPECT_NE(field_of(result).find("pages"), std::string::npos);
+}
+
+TEST_F(AStudy, IsToldAllItsMistakesAtOnceInWords) {
+  const auto fields_of = [&](const json& document) {
+    const auto body = body_of(
+        researcher->Post("/api/v1/studies", document.dump(), "application/json"), 400, "Error");
+    std::set<std::string> fields;
+    for (const auto& fault : body["error"]["errors"]) {
+      fields.insert(fault["field"].get<std::string>());
+      EXPECT_FALSE(fault["message"].get<std::string>().empty());
+    }
+    EXPECT_EQ(body["error"]["field"], body["error"]["errors"][0]["field"]);
+    return fields;
+  };
+  const json good = study()["document"];
+  json document = good;
+  document["colour"] = 1;
+  document["pages"][1]["camra"] = "x";
+  document["quota"] = -1;
+  document["labels"].erase("least");
+  EXPECT_EQ(fields_of(document),
+            (std::set<std::string>{"colour", "labels", "pages[1].camra", "quota"}));
+  document = good;
+  document["title"].erase("nl");
+  document["thanks"]["fr"] = "Merci";
+  document["pages"][2]["id"] = "car";
+  document["picture"]["width"] = 10'000'000;
+  EXPECT_EQ(fields_of(document),
+            (std::set<std::string>{"title.nl", "thanks.fr", "pages[2].id", "picture.width"}));
+  document = good;
+  document["pages"][0]["scene"] = "nowhere";
+  document["pages"][1]["camera"] = "behind";
+  document["pages"][2]["techniques"] = {"none",
+                                        {{"technique", "pcf"}, {"parameters", {{"sise", 1}}}}};
+  document["techniques"].push_back("unheard-of");
+  EXPECT_EQ(fields_of(document),
+            (std::set<std::string>{"pages[0].scene", "pages[1].camera",
+                                   "pages[2].techniques[1].parameters.sise", "techniques[9]"}));
+  EXPECT_EQ(study()["versions"].size(), 1u) << "nothing of them is stored";
 }
 
 TEST_F(AStudy, TellsParticipantsNothingOfTechniques) {
@@ -299,117 +264,6 @@ TEST_F(AStudy, PreviewsAreMarkedAndNeverCounted) {
   EXPECT_EQ(std::count(csv->body.begin(), csv->body.end(), '\n'), 1);
 }
 
-TEST_F(AStudy, ExportsARowPerRankedPicture) {
-  publish();
-  for (int i = 0; i < 4; ++i) {
-    const auto person = enter();
-    answer_all(person, 100 * (i + 1));
-    body_of(complete(person), 200, "Completion");
-  }
-  const auto csv = researcher->Get(at + "/responses.csv");
-  ASSERT_TRUE(csv);
-  EXPECT_EQ(csv->status, 200);
-  std::size_t pictures = 0;
-  const auto another = enter();
-  for (const auto& page : another["pages"])
-    if (page["kind"] == "ranking") pictures += page["images"].size();
-  EXPECT_EQ(std::count(csv->body.begin(), csv->body.end(), '\n'),
-            static_cast<std::ptrdiff_t>(4 * pictures + 1));
-  EXPECT_NE(csv->body.find(study()["hash"].get<std::string>()), std::string::npos);
-  const auto results = body_of(researcher->Get(at + "/results.json"), 200, "Results");
-  EXPECT_EQ(results["participants"], 4);
-  const auto counted = study();
-  for (const auto& page : counted["scenes"]) EXPECT_EQ(page["answers"], 4);
-}
-
-/// Files of an archive by name.
-std::map<std::string, std::string> unpacked(const std::filesystem::path& file) {
-  std::map<std::string, std::string> files;
-  int failure = 0;
-  zip_t* zip = zip_open(file.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &failure);
-  if (zip == nullptr) return files;
-  for (zip_int64_t i = 0; i < zip_get_num_entries(zip, 0); ++i) {
-    zip_stat_t stat;
-    zip_stat_index(zip, static_cast<zip_uint64_t>(i), 0, &stat);
-    std::string bytes(stat.size, '\0');
-    zip_file_t* entry = zip_fopen_index(zip, static_cast<zip_uint64_t>(i), 0);
-    EXPECT_EQ(zip_fread(entry, bytes.data(), bytes.size()), static_cast<zip_int64_t>(stat.size));
-    EXPECT_EQ(zip_fclose(entry), 0) << stat.name;  // its checksum is right
-    files[stat.name] = std::move(bytes);
-  }
-  zip_discard(zip);
-  return files;
-}
-
-TEST_F(AStudy, ExportsEverythingInOneArchive) {
-  publish();
-  const auto person = enter();
-  answer_all(person, 1);
-  body_of(put(page_of(person, 0), answer(person["pages"][0], 500, 5)), 200, "AnswerReply");
-  body_of(complete(person), 200, "Completion");
-  answer_all(enter(), 100);
-  const auto archive = researcher->Get(at + "/export.zip");
-  ASSERT_TRUE(archive);
-  ASSERT_EQ(archive->status, 200);
-  const auto file = folder.path / "export.zip";
-  std::ofstream(file, std::ios::binary) << archive->body;
-  const auto files = unpacked(file);
-  // Every file is in the codebook, and every file of the codebook is there.
-  std::set<std::string> explained;
-  for (const auto& record : study::parse_csv(files.at("codebook.csv")))
-    explained.insert(record.cells[0]);
-  explained.erase("file");
-  std::set<std::string> names;
-  for (const auto& [name, bytes] : files) {
-    names.insert(name.starts_with("figures/") ? "figures/*.svg" : name);
-    EXPECT_FALSE(bytes.empty()) << name;
-  }
-  EXPECT_EQ(names, explained);
-  EXPECT_EQ(files.at("responses.csv"), researcher->Get(at + "/responses.csv")->body);
-  const auto rows = study::parse_responses(files.at("responses.csv"));
-  ASSERT_EQ(rows.size(), 2u * 6u * 9u);
-  EXPECT_FALSE(rows.front().started_at.empty());
-  // A pair each of nine pictures on six pages of two people.
-  EXPECT_EQ(study::parse_csv(files.at("pairs.csv")).size(), 1u + 2u * 6u * 36u);
-  EXPECT_EQ(study::parse_csv(files.at("responses_wide.csv")).size(), 3u);
-  EXPECT_EQ(study::parse_csv(files.at("participants.csv")).size(), 3u);
-  const auto people = json::parse(files.at("responses.json"))["participants"];
-  ASSERT_EQ(people.size(), 2u);
-  EXPECT_FALSE(people[0]["completed_at"].is_null());
-  EXPECT_TRUE(people[1]["completed_at"].is_null());
-  const auto& first = people[0]["pages"][0];
-  EXPECT_EQ(first["answer"]["body"]["difficulty"], 5);
-  ASSERT_EQ(first["earlier_answers"].size(), 1u);
-  EXPECT_EQ(first["earlier_answers"][0]["body"]["difficulty"], 3);
-  EXPECT_EQ(first["pictures_by_slot"].size(), 9u);
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "tmp"));
-}
-
-TEST_F(AStudy, ShowsItsReportAndFigures) {
-  publish();
-  EXPECT_EQ(error_of(client->Get(at + "/report.html"), 401), "unauthorized");
-  for (int i = 1; i < 4; ++i) answer_all(enter(), 100 * i);
-  const auto report = researcher->Get(at + "/report.html");
-  ASSERT_TRUE(report);
-  EXPECT_EQ(report->status, 200);
-  EXPECT_EQ(report->get_header_value("Content-Type"), "text/html; charset=utf-8");
-  EXPECT_NE(report->get_header_value("Content-Security-Policy").find("default-src 'none'; style"),
-            std::string::npos);
-  EXPECT_NE(report->body.find("Which shadows look real?"), std::string::npos);
-  const auto list = body_of(researcher->Get(at + "/figures"), 200, "FigureList")["figures"];
-  ASSERT_FALSE(list.empty());
-  for (const auto& figure : {list.front(), list.back()}) {
-    const auto svg = researcher->Get(figure["url"].get<std::string>() + "?width_mm=120");
-    ASSERT_TRUE(svg);
-    EXPECT_EQ(svg->status, 200);
-    EXPECT_EQ(svg->get_header_value("Content-Type"), "image/svg+xml");
-    EXPECT_NE(svg->body.find("width=\"120mm\""), std::string::npos);
-  }
-  EXPECT_EQ(error_of(researcher->Get(at + "/figures/none.svg"), 404), "not_found");
-  EXPECT_EQ(error_of(researcher->Get(at + "/figures/worths.svg?set=some"), 400), "bad_value");
-  EXPECT_EQ(error_of(researcher->Get(at + "/figures/worths.svg?width_mm=0"), 400), "bad_value");
-}
-
 TEST_F(AStudy, ExcludesPeopleOnRecordAndTakesThemBack) {
   publish();
   answer_all(enter(), 1);
@@ -433,27 +287,6 @@ TEST_F(AStudy, ExcludesPeopleOnRecordAndTakesThemBack) {
   EXPECT_FALSE(back["excluded"].get<bool>());
   EXPECT_EQ(back["history"].size(), 2u);
   EXPECT_TRUE(all_included(true));
-}
-
-TEST_F(AStudy, ClosesAndBecomesANewVersionWhenChanged) {
-  const auto first = publish();
-  const auto person = enter();
-  json document = first["document"];
-  document["title"]["en"] = "Another title";
-  EXPECT_EQ(body_of(researcher->Post("/api/v1/studies", document.dump(), "application/json"), 201,
-                    "Study")["version"],
-            2);
-  body_of(put(page_of(person, 0), answer(person["pages"][0], 1)), 200, "AnswerReply");
-  const auto second = publish();
-  EXPECT_NE(second["hash"], first["hash"]);
-  // Who was amid the first version may finish it as long as its successor is open.
-  body_of(put(page_of(person, 0), answer(person["pages"][0], 2)), 200, "AnswerReply");
-  const auto old = researcher->Get(at + "/responses.csv?version=1");
-  EXPECT_NE(old->body.find(first["hash"].get<std::string>()), std::string::npos);
-  body_of(researcher->Post(at + "/close", "", "application/json"), 200, "Study");
-  EXPECT_EQ(error_of(put(page_of(person, 0), answer(person["pages"][0], 3)), 409), "conflict");
-  EXPECT_EQ(error_of(post(at + "/participants", {}), 409), "conflict");
-  EXPECT_EQ(body_of(client->Get("/s/thesis-2007/welcome"), 200, "Welcome")["status"], "closed");
 }
 
 TEST_F(AStudy, KeepsTextsVerbatim) {

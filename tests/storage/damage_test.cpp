@@ -214,7 +214,7 @@ TEST_F(Damaged, ADataFolderOfAnEarlierVersionIsSealedOnce) {
   {
     Store store(data);
     EXPECT_TRUE(store.database.healthy()) << store.database.damage_text();
-    EXPECT_EQ(store.studies.latest("old")->seed, 5u);
+    EXPECT_EQ(store.studies.current("old")->seed, 5u);
   }
   change("UPDATE studies SET seed = 6");
   EXPECT_FALSE(Store(data).database.healthy());

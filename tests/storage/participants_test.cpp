@@ -53,7 +53,8 @@ class Participation : public testing::Test {
         who, {page, id, body, "2026-01-03"}, [&](const json& stored) { return stored == body; },
         [&](const std::string& replaced, int answered) {
           return json{{"id", id}, {"replaced", replaced}, {"answered", answered}};
-        });
+        },
+        "2026-01-05");
   }
 
   std::int64_t count(const std::string& query) {
@@ -181,7 +182,11 @@ TEST_F(Participation, ClosedStudiesTakeNobodyAndNothing) {
   const auto who = enter("a");
   studies.close("s", "2026-01-05");
   EXPECT_EQ(code_of([&] { enter("b"); }), "conflict");
-  EXPECT_EQ(code_of([&] { answer(who, 0, "x", {}); }), "conflict");
+  EXPECT_EQ(code_of([&] { answer(who, 0, "x", {}); }), "");  // amid it, and not closed long enough
+  studies.reopen("s", 1);
+  studies.close("s", "2026-01-04");
+  EXPECT_EQ(code_of([&] { answer(who, 1, "y", {}); }), "conflict");
+  EXPECT_EQ(answer(who, 0, "x", {}).at("id"), "x");
 }
 
 TEST_F(Participation, WithdrawalLeavesNoTrace) {
@@ -250,6 +255,38 @@ TEST_F(Participation, GivesTheFirstFreePlaceAsTheStudySays) {
       holders.erase(chosen);
     }
   }
+}
+
+/// One in five drops out, by staying away or by withdrawing; their places go to others. At most 20
+/// people are inside. Ten thousand people are tested on study::next_place, which this one equals.
+TEST_F(Participation, GivesThePlacesOfPeopleWhoDropOutToOthers) {
+  constexpr int people = 500;
+  std::mt19937 random(20071);
+  std::vector<ParticipantRecord> inside;
+  std::set<std::size_t> completed;
+  const auto time = [](int second) {
+    std::string digits = std::to_string(second);
+    return "2026-01-02T" + std::string(6 - digits.size(), '0') + digits;
+  };
+  std::size_t dropped = 0;
+  for (int i = 0; i < people; ++i) {
+    auto fresh = person(std::to_string(i), time(i));
+    inside.push_back(participants.enrol(fresh, 0, time(std::max(0, i - 50))));
+    if (inside.size() <= 20) continue;
+    const auto chosen = inside.begin() + static_cast<std::ptrdiff_t>(random() % inside.size());
+    if (random() % 5 != 0) {
+      participants.complete(*chosen, 0, json::object(), time(i));
+      EXPECT_TRUE(completed.insert(chosen->place).second) << "two people completed one place";
+    } else {
+      ++dropped;
+      if (random() % 2 == 0) participants.withdraw(chosen->withdrawal_code, time(i));
+    }
+    inside.erase(chosen);
+  }
+  EXPECT_GT(dropped, 60u);
+  // Below the highest place, all but those of people inside and the last who stayed away are done.
+  EXPECT_LE(*completed.rbegin() + 1, completed.size() + 20 + 50);
+  EXPECT_EQ(completed.size() + dropped + inside.size(), static_cast<std::size_t>(people));
 }
 
 TEST_F(Participation, TakesAsMuchWorkForTheThousandthPersonAsForTheFirst) {
@@ -358,7 +395,9 @@ TEST_F(Participation, AChangedDocumentBecomesANewVersion) {
   const auto second = studies.put_draft("s", {{"id", "s"}, {"changed", true}}, 43, "2026-01-06");
   EXPECT_EQ(second.version, 2);
   EXPECT_EQ(studies.open_version("s")->version, 1);
-  EXPECT_EQ(studies.put_draft("s", {{"id", "s"}}, 44, "2026-01-06").version, 2);
+  EXPECT_EQ(studies.put_draft("s", {{"id", "s"}}, 44, "2026-01-06").version, 1);  // as published
+  EXPECT_EQ(studies.current("s")->version, 1);
+  EXPECT_EQ(studies.draft("s")->version, 2);
   studies.start_publishing("s", 2, "other", 0);
   studies.open("s", 2, "2026-01-07");
   EXPECT_EQ(studies.find("s", 1)->status, "closed");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "study/random.h"
 #include "study_file.h"
@@ -138,6 +139,27 @@ TEST(Enrolment, PracticeComesFirstAndRepeatsLast) {
   EXPECT_EQ(page_of(study, plan.pages.front()).scene, "boxes");
   EXPECT_EQ(plan.pages.back().kind, PageKind::repeat);
   EXPECT_EQ(page_of(study, plan.pages.back()).scene, "island");
+}
+
+TEST(Enrolment, ARepeatedPageNeverStandsNextToItsFirstShowing) {
+  const std::vector<std::vector<std::string>> lists{
+      {"island"}, {"island", "car"}, {"car", "boxes", "disco-box", "island", "warehouse-inside"}};
+  for (const auto& repeats : lists) {
+    json document = thesis_document();
+    document["repeats"] = repeats;
+    const Study study = parse_study(document);
+    std::size_t beside = 0;
+    for (std::size_t place = 0; place < 200; ++place) {
+      const EnrolmentPlan plan = plan_enrolment(study, 3, place);
+      ASSERT_EQ(plan.pages.size(), 6 + repeats.size());
+      std::set<std::pair<std::size_t, PageKind>> shown;
+      for (std::size_t i = 0; i < plan.pages.size(); ++i) {
+        EXPECT_TRUE(shown.emplace(plan.pages[i].page, plan.pages[i].kind).second);
+        beside += i > 0 && plan.pages[i].page == plan.pages[i - 1].page ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(beside, 0u) << repeats.size();
+  }
 }
 
 TEST(Enrolment, TheSeedAloneDecides) {

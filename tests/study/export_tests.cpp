@@ -101,7 +101,8 @@ TEST(ParticipantsFile, IsFlatAndNeutralised) {
   person.exclusion_reason = "=cmd|' /C calc'!A0";
   person.flags = "fast flat";
   person.parameters = {{"PROLIFIC_PID", "@x"}};
-  person.details = {{"games", "yes"}};
+  person.details = {{"demographics", {{"games", "yes"}}}, {"comment", "=1+1"}};
+  person.checks.patches_seen = 6;
   std::string text = table.header();
   table.append(person, text);
   const auto rows = cells_of(text);
@@ -113,6 +114,9 @@ TEST(ParticipantsFile, IsFlatAndNeutralised) {
   EXPECT_EQ(value.at("exclusion_reason"), "'=cmd|' /C calc'!A0");
   EXPECT_EQ(value.at("parameter.PROLIFIC_PID"), "'@x");
   EXPECT_EQ(value.at("answer.games"), "yes");
+  EXPECT_EQ(value.at("comment"), "'=1+1");
+  EXPECT_EQ(value.at("patches_seen"), "6");
+  EXPECT_EQ(value.at("practice_right"), "");
   EXPECT_EQ(value.at("flags"), "fast flat");
 }
 

@@ -141,7 +141,7 @@ TEST(Study, TheWelcomeTellsNeitherTechniquesNorScenesNorTheCompletionCode) {
       EXPECT_EQ(text.find("\"" + picture.label + "\""), std::string::npos) << picture.label;
     }
   }
-  EXPECT_EQ(text.find(study.completion.code), std::string::npos);
+  EXPECT_EQ(text.find(study.completion.complete.code), std::string::npos);
   EXPECT_EQ(welcome["page_count"], 6);
   EXPECT_EQ(welcome["texts"]["nl"]["most_label"], "meest realistisch");
   EXPECT_EQ(welcome["texts"]["en"]["difficulty_labels"].size(), 5u);
