@@ -63,7 +63,8 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
 
 test("a closed study lets nobody in", async () => {
   await page.getByRole("button", { name: "Close the study" }).click();
-  await page.getByText("Closed", { exact: true }).waitFor();
+  await page.locator("dialog").getByRole("button", { name: "Close" }).click();
+  await page.getByText("Closed", { exact: true }).first().waitFor();
   const person = await Person.arrive(browser, server, study);
   await person.page.getByText("This survey is not open at the moment.").waitFor();
   await person.context.close();

@@ -60,6 +60,8 @@ test("a practice page comes first, says so, and is not in the answers", async ()
   await person.click_onto("A", 0);
   await person.click_onto("B", 1);
   await person.confirm();
+  await person.page.getByText("This page does not count.").waitFor();
+  await person.press("Continue");
   await person.see_page(1);
   assert.equal(await person.page.getByText("It does not count.").count(), 0);
   await person.answer({ A: 0, B: 1, C: 2 });
@@ -75,7 +77,6 @@ test("a study with enough participants thanks whoever comes later", async () => 
   await first.answer({ A: 0, B: 1, C: 2 });
   await first.completion_code();
   const second = await Person.arrive(browser, server, "small-quota");
-  await second.press("I agree and want to take part");
   await second.page.getByText("This survey takes no more participants.").waitFor();
   await first.context.close();
   await second.context.close();

@@ -39,12 +39,30 @@ function code_box(heading, code, strings, ...more) {
     h("div", { class: "code-line" }, selectable, navigator.clipboard ? copy : null), more);
 }
 
-export function end_view({ entry, strings, thanks, forget }) {
+/// The code by which the site that sent the person knows how taking part ended, and the way back.
+function completion_box({ completion_code, completion_url }, strings) {
+  const link = completion_url ? h("p", {}, h("a", { class: "primary", href: completion_url, rel: "noreferrer" },
+    strings.completion_link)) : null;
+  return completion_code ? code_box(strings.completion, completion_code, strings, link) : link;
+}
+
+/// For those who come when the study has as many people as it needs.
+export function full_view(welcome, strings) {
+  return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.full), completion_box(welcome, strings));
+}
+
+/// For those whose study was closed before they finished: what is kept, and how to have it deleted.
+export function over_view(entry, strings) {
+  return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.over_heading),
+    paragraphs(strings.over_kept(entry.answered, entry.pages.length)),
+    code_box(strings.withdrawal, entry.withdrawal_code, strings, h("p", {}, strings.withdrawal_text)),
+    withdrawal_form(strings));
+}
+
+export function end_view({ entry, strings, thanks, forget, screened_out }) {
   return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.end_heading),
-    paragraphs(thanks),
-    entry.completion_code ? code_box(strings.completion, entry.completion_code, strings,
-      entry.completion_url ? h("p", {}, h("a", { class: "primary", href: entry.completion_url, rel: "noreferrer" },
-        strings.completion_link)) : null) : null,
+    paragraphs(screened_out ? strings.screened_out : thanks),
+    completion_box(entry, strings),
     code_box(strings.withdrawal, entry.withdrawal_code, strings, h("p", {}, strings.withdrawal_text)),
     withdrawal_form(strings, forget));
 }

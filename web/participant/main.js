@@ -2,10 +2,11 @@
 
 import { h, icon, show } from "/assets/shared/dom.js";
 import { ApiError, get } from "/assets/shared/http.js";
-import { demographics_view, end_view } from "./end.js";
+import { demographics_view, end_view, full_view, over_view } from "./end.js";
 import { Outbox } from "./outbox.js";
 import { RankingPage } from "./page.js";
 import { Person } from "./person.js";
+import { practice_view } from "./practice.js";
 import { load_ahead, load_pictures } from "./pictures.js";
 import { open_storage } from "./storage.js";
 import { strings_of } from "./strings.js";
@@ -16,6 +17,9 @@ const phone_px = 600;  // shorter side of a screen, CSS pixels, below which a to
 const toast_ms = 3500;
 
 const study = decodeURIComponent(location.pathname.split("/").filter(Boolean).at(-1));
+const query = new URLSearchParams(location.search);
+const preview = Number(query.get("preview")) || null;  // the version that a researcher looks at
+const entry_name = preview ? `${study}@${preview}` : study;
 const main = document.getElementById("main");
 const bar = document.getElementById("bar");
 const live = document.getElementById("live");
@@ -27,10 +31,10 @@ class Course {
     this.outbox.addEventListener("change", () => this.outbox_changed());
     this.use_language(navigator.language?.split("-")[0] ?? "en");
     await this.attempt(async () => {
-      this.welcome = await get(`/s/${encodeURIComponent(study)}/welcome`);
+      this.welcome = await get(`/s/${encodeURIComponent(study)}/welcome${preview ? `?version=${preview}` : ""}`);
       const wanted = navigator.languages?.map((tag) => tag.split("-")[0]) ?? [];
       this.use_language(wanted.find((tag) => this.welcome.languages.includes(tag)) ?? this.welcome.languages[0]);
-      this.person = await Person.resume(this.storage, this.outbox, study);
+      this.person = await Person.resume(this.storage, this.outbox, entry_name);
       if (this.person) await this.go_on(history.state?.page ?? null);
       else this.show_consent();
     });
@@ -79,8 +83,12 @@ class Course {
   }
 
   show_consent() {
-    if (this.welcome.status !== "open") {
+    if (this.welcome.status !== "open" && !preview) {
       this.show(message_view(this.strings.not_open));
+      return;
+    }
+    if (this.welcome.full && !preview) {
+      this.show(full_view(this.welcome, this.strings));
       return;
     }
     const { welcome, language } = this;
@@ -92,11 +100,11 @@ class Course {
   }
 
   async enter() {
-    const query = new URLSearchParams(location.search);
     const parameters = Object.fromEntries(this.welcome.id_parameters
       .filter((name) => query.has(name)).map((name) => [name, query.get(name).slice(0, 200)]));
-    this.person = await Person.enter(this.storage, this.outbox, study,
-      { language: this.language, consent_version: this.welcome.consent_version, parameters });
+    this.person = await Person.enter(this.storage, this.outbox, study, entry_name,
+      { language: this.language, consent_version: this.welcome.consent_version, parameters,
+        ...(preview ? { preview: true, version: preview } : {}) });
     await this.go_on(null);
   }
 
@@ -104,17 +112,27 @@ class Course {
   async go_on(wanted) {
     const { person } = this;
     this.use_language(person.entry.language);
-    this.outbox.flush().catch(() => {});
-    if (person.entry.status === "completed") {
-      this.show_end();
-      return;
+    const sent = this.outbox.flush().catch(() => {});
+    if (person.entry.checks_end) {
+      await sent;
+      await person.look();
     }
+    if (this.show_if_ended()) return;
     const open = await person.first_open();
     const begun = await this.storage.get(person.key("begun"));
     if (!begun && open === 0) this.show_instructions();
     else if (wanted !== null && wanted <= open && wanted < person.pages.length) await this.show_page(wanted);
     else if (open < person.pages.length) await this.show_page(open);
     else await this.finish();
+  }
+
+  /// Shows how taking part ended, where it did.
+  show_if_ended() {
+    const { status } = this.person.entry;
+    if (status === "started") return false;
+    if (status === "over") this.show(over_view(this.person.entry, this.strings));
+    else this.show_end();
+    return true;
   }
 
   details() {
@@ -130,8 +148,12 @@ class Course {
     this.show(instruction_view({ texts: this.texts, strings: this.strings, code: this.person.entry.withdrawal_code,
       count: (seen) => this.keep_details({ patches_seen: seen ?? undefined }),
       begin: async () => {
-        await this.storage.set(this.person.key("begun"), true);
-        await this.show_page(0);
+        const { patches_seen } = await this.details();
+        await this.attempt(async () => {
+          if (patches_seen !== undefined) await this.person.tell_screen(patches_seen);
+          await this.storage.set(this.person.key("begun"), true);
+          if (!this.show_if_ended()) await this.show_page(0);
+        });
       } }));
   }
 
@@ -151,12 +173,23 @@ class Course {
       save: (draft) => person.save_draft(number, draft),
       submit: async (answer) => {
         await person.submit(number, answer);
+        if (page.right_order) await this.show_practised(page, pictures, answer);
         await this.attempt(() => (number + 1 < person.pages.length ? this.go_on(number + 1) : this.go_on(null)));
       },
       back: number > 0 ? () => history.back() : null });
     this.show(view.element, view);
     view.show();
     load_ahead(person.pages[number + 1]);
+    await person.look();
+    this.draw_bar();
+  }
+
+  /// What was meant on the practice page; the promise ends when the person goes on.
+  show_practised(page, pictures, answer) {
+    return new Promise((go_on) => {
+      this.show(practice_view({ page, pictures, answer, strings: this.strings, labels: this.texts.labels, go_on,
+        again: () => this.attempt(() => this.show_page(this.at)) }));
+    });
   }
 
   /// Asks again until every picture is there; each failure is counted with the page's answer.
@@ -200,7 +233,7 @@ class Course {
 
   show_end() {
     const { person } = this;
-    this.show(end_view({ entry: person.entry, strings: this.strings, thanks: this.texts.thanks, forget: () => person.forget() }));
+    this.show(end_view({ entry: person.entry, screened_out: person.entry.status === "screened_out", strings: this.strings, thanks: this.texts.thanks, forget: () => person.forget() }));
   }
 
   outbox_changed() {
@@ -227,6 +260,9 @@ class Course {
       h("span", { class: "bar-title" }, this.welcome ? this.texts.title : ""),
       on_page ? h("div", { class: "progress", role: "img", "aria-label": this.strings.page_of(this.at + 1, pages.length) },
         pages.map((_, index) => h("span", { class: index < this.at ? "done" : index === this.at ? "now" : "" }))) : "",
+      preview ? h("span", { class: "closing" }, this.strings.preview) : "",
+      this.person?.entry.closes_at && on_page
+        ? h("span", { class: "closing", role: "status" }, this.strings.closes(new Date(this.person.entry.closes_at))) : "",
       this.person && text ? h("span", { class: `save ${state}`, role: "status", title: state === "waiting" ? this.strings.waiting : "" },
         state === "saved" ? icon("check") : h("span", { class: "dot" }), text) : "");
     document.body.classList.toggle("offline", state === "waiting");

@@ -1,7 +1,7 @@
 // One participant: entering, resuming, and what has been answered. The server's state and this
 // device's are joined here, so that reload, back and a second tab all find the same answers.
 
-import { ApiError, get, post, uuid } from "/assets/shared/http.js";
+import { ApiError, get, post, put, uuid } from "/assets/shared/http.js";
 import { alone, Drafts } from "./storage.js";
 
 /// The judgement in an answer, without what was observed beside it.
@@ -32,17 +32,18 @@ export class Person {
 
   /// Enters once, however often the button is pressed, in however many tabs: the id is kept before
   /// the request leaves.
-  static enter(storage, outbox, study, { language, consent_version, parameters }) {
-    return alone(`enter:${study}`, async () => {
-      const earlier = await Person.resume(storage, outbox, study);
+  /// `as` names the person's entry on this device: a preview is kept apart.
+  static enter(storage, outbox, study, as, request) {
+    return alone(`enter:${as}`, async () => {
+      const earlier = await Person.resume(storage, outbox, as);
       if (earlier) return earlier;
-      const key = `person:${study}`;
+      const key = `person:${as}`;
       const enrolment_id = (await storage.get(key))?.enrolment_id ?? uuid();
       await storage.set(key, { enrolment_id });
       const entry = await post(`/api/v1/studies/${encodeURIComponent(study)}/participants`,
-        { language, consent_version, enrolment_id, parameters });
+        { ...request, enrolment_id });
       await storage.set(key, { enrolment_id, token: entry.participant });
-      return new Person(storage, outbox, study, entry);
+      return new Person(storage, outbox, as, entry);
     });
   }
 
@@ -90,8 +91,21 @@ export class Person {
     this.entry = await get(this.path);
   }
 
+  /// Where the person stands now, as far as the server can be asked.
+  async look() {
+    try {
+      this.entry = await get(this.path);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+    }
+  }
+
+  async tell_screen(patches_seen) {
+    this.entry = await put(`${this.path}/screen`, { patches_seen });
+  }
+
   async complete(details) {
-    this.entry = { ...this.entry, status: "completed", ...(await post(`${this.path}/complete`, details)) };
+    this.entry = { ...this.entry, ...(await post(`${this.path}/complete`, details)) };
   }
 
   async forget() {

@@ -33,7 +33,9 @@ export function consent_view({ welcome, language, texts, agree, choose }) {
     language_choice(welcome, language, strings, choose),
     h("h1", { tabindex: "-1" }, texts.title), paragraphs(texts.introduction),
     h("section", { class: "consent", "aria-labelledby": "consent-heading" },
-      h("h2", { id: "consent-heading" }, strings.consent_heading), paragraphs(texts.consent)),
+      h("h2", { id: "consent-heading" }, strings.consent_heading), paragraphs(texts.consent),
+      h("details", { class: "kept" }, h("summary", {}, strings.kept_heading),
+        h("ul", {}, strings.kept(welcome.id_parameters).map((item) => h("li", {}, item))))),
     problem, h("div", { class: "actions" }, start),
     withdrawal_form(strings));
 }

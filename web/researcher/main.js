@@ -1,7 +1,10 @@
-// The researcher's pages: #studies, #study/ID and #bench.
+// The researcher's pages: #studies, #study/ID/VERSION, #people/ID/VERSION, #edit/ID/VERSION, #copy/ID/VERSION
+// and #bench.
 
 import { h, show } from "/assets/shared/dom.js";
 import { bench_view } from "./bench.js";
+import { editor_view } from "./editor.js";
+import { people_view } from "./people.js";
 import { study_view } from "./study.js";
 import { studies_view } from "./studies.js";
 import { words_of } from "./words.js";
@@ -14,15 +17,21 @@ async function route() {
   leaving.abort();
   leaving = new AbortController();
   const { signal } = leaving;
-  const [place, id] = location.hash.slice(1).split("/").map(decodeURIComponent);
+  const [place, id, version] = location.hash.slice(1).split("/").map(decodeURIComponent);
   for (const link of document.querySelectorAll("nav a")) {
-    const here = link.hash === `#${place || "studies"}` || (place === "study" && link.hash === "#studies");
+    const here = link.hash === `#${place || "studies"}` || (place !== "bench" && link.hash === "#studies");
     if (here) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
   try {
-    const view = place === "bench" ? await bench_view(signal)
-      : place === "study" ? await study_view(id, signal) : await studies_view();
+    const views = {
+      bench: () => bench_view(signal),
+      study: () => study_view(id, version, signal),
+      people: () => people_view(id, version),
+      edit: () => editor_view(id, version, false),
+      copy: () => editor_view(id, version, true),
+    };
+    const view = await (views[place] ?? studies_view)();
     if (!signal.aborted) show(main, view);
   } catch (error) {
     if (signal.aborted) return;

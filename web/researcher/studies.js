@@ -1,30 +1,36 @@
 // All studies, and putting in a new one.
 
 import { h } from "/assets/shared/dom.js";
-import { get, post } from "/assets/shared/http.js";
-import { words_of } from "./words.js";
+import { get } from "/assets/shared/http.js";
+import { store } from "./editor.js";
 
 const statuses = { draft: "Draft", publishing: "Rendering its pictures", open: "Open", closed: "Closed" };
 
 export const status_badge = (status) => h("span", { class: `badge ${status}` }, statuses[status] ?? status);
 
-function upload() {
-  const outcome = h("p", { role: "alert", class: "problems" });
+function upload(studies) {
+  const outcome = h("div", { role: "alert", class: "problems" });
   const file = h("input", { type: "file", id: "study-file", accept: ".json,application/json" });
   file.addEventListener("change", async () => {
-    outcome.textContent = "";
-    try {
-      const document = JSON.parse(await file.files[0].text());
-      const study = await post("/api/v1/studies", document);
-      location.hash = `#study/${encodeURIComponent(study.id)}`;
-    } catch (error) {
-      outcome.textContent = error instanceof SyntaxError ? `This file is not JSON: ${error.message}` : words_of(error);
-    }
+    await store(await file.files[0].text(), outcome);
     file.value = "";
   });
+  const template = h("select", { id: "study-template" }, studies.map(({ id, title }) => h("option", { value: id }, `${title} (${id})`)));
   return h("section", { class: "card upload" }, h("h2", {}, "New study"),
     h("p", {}, "A study is one JSON file. It arrives as a draft; nobody can enter before it is published."),
-    h("label", { for: "study-file" }, "Study file"), file, outcome);
+    h("div", { class: "ways" },
+      studies.length ? h("div", {}, h("label", { for: "study-template" }, "From a template"), template, " ",
+        h("button", { type: "button", class: "quiet", on: { click: () => {
+          location.hash = `#copy/${encodeURIComponent(template.value)}`;
+        } } }, "Write a copy")) : null,
+      h("div", {}, h("label", { for: "study-file" }, "From a file"), file)),
+    outcome);
+}
+
+/// What stands beside the version that a study is known by.
+function beside(study) {
+  const draft = study.versions.find((version) => version.version !== study.version && version.status === "draft");
+  return draft ? h("small", {}, `with a draft of version ${draft.version}`) : null;
 }
 
 export async function studies_view() {
@@ -32,9 +38,9 @@ export async function studies_view() {
   return h("div", {}, h("h1", { tabindex: "-1" }, "Studies"),
     studies.length ? h("ul", { class: "studies" }, studies.map((study) => h("li", { class: "card" },
       h("h2", {}, h("a", { href: `#study/${encodeURIComponent(study.id)}` }, study.title)),
-      h("p", {}, status_badge(study.status), h("code", {}, study.id)),
+      h("p", {}, status_badge(study.status), h("code", {}, study.id), " ", beside(study)),
       h("p", { class: "counts" }, h("strong", {}, String(study.participants.completed)), " completed, ",
         h("strong", {}, String(study.participants.entered)), " entered"))))
       : h("p", {}, "There is no study yet."),
-    upload());
+    upload(studies));
 }

@@ -1,9 +1,11 @@
 // One study: publishing with progress, live counts, results and exports.
 
 import { h, icon } from "/assets/shared/dom.js";
-import { get, post, sleep } from "/assets/shared/http.js";
+import { get, post, remove, sleep } from "/assets/shared/http.js";
+import { ask } from "./dialogs.js";
 import { results_section } from "./results.js";
 import { status_badge } from "./studies.js";
+import { versions_table } from "./versions.js";
 import { words_of } from "./words.js";
 
 const poll_ms = { publishing: 700, open: 5000 };
@@ -15,8 +17,15 @@ function participant_link(study) {
     await navigator.clipboard.writeText(address);
     copy.lastChild.textContent = "Copied";
   });
-  return h("p", { class: "link-line" }, h("span", {}, "Link for participants: "), h("a", { href: address }, address),
-    navigator.clipboard ? copy : null);
+  const code = h("details", { class: "qr" }, h("summary", {}, "QR code"));
+  code.addEventListener("toggle", () => {
+    if (code.childElementCount > 1) return;
+    const file = `/api/v1/studies/${encodeURIComponent(study.id)}/qr.svg`;
+    code.append(h("img", { src: file, alt: `QR code of ${address}`, width: "220", height: "220" }),
+      h("a", { class: "quiet", href: file, download: `${study.id}-qr.svg` }, "Save for a poster"));
+  });
+  return h("div", {}, h("p", { class: "link-line" }, h("span", {}, "Link for participants: "), h("a", { href: address }, address),
+    navigator.clipboard ? copy : null), code);
 }
 
 function counts(study) {
@@ -45,12 +54,23 @@ function figures_list(path) {
   return details;
 }
 
+/// How often each picture was answered at each position: gaps in the balance are seen here.
+function cells_table({ id, cells }) {
+  const slots = cells[0].answers_by_slot.map((_, slot) => h("th", { scope: "col" }, String(slot + 1)));
+  return h("details", {}, h("summary", {}, id),
+    h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Answers by position: ${id}` },
+      h("table", { class: "plain" }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Picture at position"), slots)),
+        h("tbody", {}, cells.map(({ picture, answers_by_slot }) => h("tr", {}, h("th", { scope: "row" }, picture),
+          answers_by_slot.map((count) => h("td", { class: "number" }, String(count)))))))));
+}
+
 function pages_table(study) {
   if (study.scenes.length === 0) return null;
-  return h("table", { class: "plain" }, h("caption", {}, "Answers so far"),
+  return [h("table", { class: "plain" }, h("caption", {}, "Answers so far"),
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Page"), h("th", { scope: "col" }, "Answers"))),
-    h("tbody", {}, study.scenes.map(({ scene, answers }) => h("tr", {}, h("th", { scope: "row" }, scene),
-      h("td", { class: "number" }, String(answers))))));
+    h("tbody", {}, study.scenes.map(({ id, answers }) => h("tr", {}, h("th", { scope: "row" }, id),
+      h("td", { class: "number" }, String(answers)))))),
+  h("details", { class: "cells" }, h("summary", {}, "Answers by picture and position"), study.scenes.map(cells_table))];
 }
 
 function progress_of(study) {
@@ -69,7 +89,7 @@ class StudyView {
     this.live = h("section", { class: "card" });
     this.problem = h("p", { class: "problems", role: "alert" });
     this.results = h("section", {});
-    this.figures = figures_list(this.path("/figures"));
+    this.figures = figures_list(this.version_path("/figures"));
     this.element = h("div", {}, h("p", {}, h("a", { href: "#studies" }, "All studies")),
       h("h1", { tabindex: "-1" }, study.title), this.live, this.problem, this.results);
     this.draw();
@@ -80,13 +100,24 @@ class StudyView {
     return `/api/v1/studies/${encodeURIComponent(this.study.id)}${rest}`;
   }
 
-  action(name, path, main) {
+  /// The same of the version that is shown.
+  version_path(rest = "", version = this.study.version) {
+    return `${this.path(rest)}?version=${version}`;
+  }
+
+  /// A button that does something at the server and shows the version that is left, after a question
+  /// where `before` asks one.
+  action(name, act, { main = false, before = null } = {}) {
     const button = h("button", { type: "button", class: main ? "primary" : "quiet" }, name);
     button.addEventListener("click", async () => {
+      if (before && (await ask(before)) === null) return;
       button.disabled = true;
       this.problem.textContent = "";
       try {
-        this.study = await post(this.path(path));
+        const changed = await act();
+        if (changed) location.hash = `#study/${encodeURIComponent(changed.id)}/${changed.version}`;
+        else location.hash = "#studies";
+        if (changed) this.study = changed;
         this.draw();
         this.follow();
       } catch (error) {
@@ -97,21 +128,59 @@ class StudyView {
     return button;
   }
 
+  close_question(version) {
+    const { entered, completed } = version.participants;
+    const amid = entered - completed;
+    const grace = this.study.grace_minutes;
+    return { title: "Close the study?", action: "Close",
+      text: `Nobody can enter any more. ${amid === 1 ? "One person has" : `${amid} people have`} entered and not finished; `
+        + `${grace ? `they can go on for ${grace} minutes` : "they cannot go on"}. You can open it again.` };
+  }
+
+  publish_question(draft) {
+    const open = this.study.versions.find((version) => version.status === "open");
+    return open ? { title: `Publish version ${draft.version}?`, action: "Publish",
+      text: `Once its pictures are there, it opens and version ${open.version} closes. Those who are amid version ${open.version} can go on for a while.` } : null;
+  }
+
+  /// What can be done with a version.
+  version_actions(version) {
+    const { study } = this;
+    const at = `${encodeURIComponent(study.id)}/${version.version}`;
+    const link = (name, href, more = {}) => h("a", { class: "quiet", href, ...more }, name);
+    const { status } = version;
+    return [
+      status === "draft" ? this.action("Render the pictures and publish", () => post(this.path("/publish")),
+        { main: true, before: this.publish_question(version) }) : null,
+      status === "open" ? this.action("Close the study", () => post(this.path("/close")), { before: this.close_question(version) }) : null,
+      status === "closed" && !study.versions.some((other) => other.status === "open")
+        ? this.action("Open again", () => post(this.version_path("/reopen", version.version))) : null,
+      link("Preview", `/s/${encodeURIComponent(study.id)}?preview=${version.version}`, { target: "_blank", rel: "noopener" }),
+      version.hash ? link("Participants", `#people/${at}`) : null,
+      status === "publishing" ? null : link(status === "draft" ? "Edit" : "Edit as new version", `#edit/${at}`),
+      link("Copy", `#copy/${at}`),
+      link("Download", this.version_path("/study.json", version.version), { download: `${study.id}.json` }),
+      status === "draft" ? this.action("Delete the draft", async () => {
+        await remove(this.path("/draft"));
+        return study.versions.length > 1 ? get(this.path()) : null;
+      }, { before: { title: "Delete the draft?", text: "Its text and what was tried on it are gone for good.", action: "Delete", danger: true } }) : null,
+    ];
+  }
+
   draw() {
     const { study } = this;
-    const exported = (name, text) => h("a", { class: "quiet", href: this.path(`/${name}`), download: `${study.id}-${name}` }, text);
+    const exported = (name, text) => h("a", { class: "quiet", href: this.version_path(`/${name}`), download: `${study.id}-${name}` }, text);
     this.live.replaceChildren(...[
       h("p", {}, status_badge(study.status), h("code", {}, study.id), ` version ${study.version}`,
         study.hash ? h("span", { class: "small" }, ` frozen as ${study.hash.slice(0, 12)}`) : null),
       progress_of(study),
-      study.status === "open" ? participant_link(study) : null,
-      study.hash ? [counts(study), pages_table(study)] : null,
-      h("div", { class: "actions" },
-        study.status === "draft" ? this.action("Render the pictures and publish", "/publish", true) : null,
-        study.status === "open" ? this.action("Close the study", "/close", false) : null,
-        study.hash ? [h("a", { class: "quiet", href: this.path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
-          exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
-          exported("results.json", "Results (JSON)")] : null),
+      study.versions.some((version) => version.status === "open") ? participant_link(study) : null,
+      versions_table(study, study.version, (version) => this.version_actions(version)),
+      study.hash ? [h("h2", {}, `Version ${study.version}`), counts(study), pages_table(study)] : null,
+      study.hash ? h("div", { class: "actions" },
+        h("a", { class: "quiet", href: this.version_path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
+        exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
+        exported("results.json", "Results (JSON)")) : null,
       study.hash ? this.figures : null,
     ].flat(Infinity).filter(Boolean));
     this.draw_results();
@@ -121,10 +190,11 @@ class StudyView {
   async draw_results() {
     const { study } = this;
     const stamp = JSON.stringify([study.hash, study.scenes, study.participants]);
-    if (!study.hash || stamp === this.drawn) return;
+    // A version that is being published has its hash, and no answers yet.
+    if (!study.hash || study.status === "publishing" || stamp === this.drawn) return;
     this.drawn = stamp;
     try {
-      this.results.replaceChildren(results_section(await get(this.path("/results.json")), study));
+      this.results.replaceChildren(results_section(await get(this.version_path("/results.json")), study));
     } catch (error) {
       this.drawn = null;
       this.results.replaceChildren(h("p", { class: "problems", role: "alert" }, `The results cannot be shown: ${words_of(error)}`));
@@ -139,7 +209,7 @@ class StudyView {
       if (this.signal.aborted) return;
       try {
         const before = JSON.stringify(this.study);
-        this.study = await get(this.path());
+        this.study = await get(this.version_path());
         this.problem.textContent = "";
         if (JSON.stringify(this.study) !== before) this.draw();
       } catch (error) {
@@ -150,6 +220,6 @@ class StudyView {
   }
 }
 
-export async function study_view(id, signal) {
-  return new StudyView(await get(`/api/v1/studies/${encodeURIComponent(id)}`), signal).element;
+export async function study_view(id, version, signal) {
+  return new StudyView(await get(`/api/v1/studies/${encodeURIComponent(id)}${version ? `?version=${version}` : ""}`), signal).element;
 }

@@ -1,11 +1,12 @@
 // Calls to the API. Every failure is an ApiError that says whether trying again may help.
 
 export class ApiError extends Error {
-  constructor(message, { status = 0, code = "network", field = null, retry_after_s = null } = {}) {
+  constructor(message, { status = 0, code = "network", field = null, errors = [], retry_after_s = null } = {}) {
     super(message);
     this.status = status;  // 0: no reply arrived
     this.code = code;
     this.field = field;
+    this.errors = errors;  // all faults of a document, where there may be several
     this.retry_after_s = retry_after_s;
   }
 
@@ -29,6 +30,7 @@ async function failure_of(response) {
     status: response.status,
     code: error.code ?? "http",
     field: error.field ?? null,
+    errors: error.errors ?? [],
     retry_after_s: Number.isFinite(after) && after > 0 ? after : null,
   });
 }
