@@ -9,6 +9,7 @@ import { significant, words_of } from "./words.js";
 const outcomes = { started: "started", completed: "completed", screened_out: "ended by a check" };
 
 const clock = (time) => (time ? new Date(time).toLocaleString() : "");
+const times = (count) => (count === 1 ? "once" : `${count} times`);
 const name_of = (flag) => flag.replaceAll("_", " ");
 
 function evidence_of({ evidence }) {
@@ -26,7 +27,7 @@ function timeline(person) {
   const what = (answer) => `${answer.kind === "ranking" ? "page" : answer.kind} ${answer.page_index + 1} (${answer.page})`
     + `${answer.current ? "" : ", replaced later"}`
     + `${answer.active_ms === null ? "" : `, ${significant(answer.active_ms / 1000)} s`}`
-    + `${answer.swaps ? `, turned round ${answer.swaps} times` : ""}${answer.blurs ? `, left the window ${answer.blurs} times` : ""}`;
+    + `${answer.swaps ? `, turned round ${times(answer.swaps)}` : ""}${answer.blurs ? `, left the window ${times(answer.blurs)}` : ""}`;
   const steps = [
     { at: person.entered_at, text: "entered" },
     ...person.timeline.map((answer) => ({ at: answer.at, text: what(answer) })),
