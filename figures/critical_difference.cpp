@@ -8,7 +8,6 @@ namespace penumbra::figures {
 
 namespace {
 
-constexpr double margin = 3.0;
 constexpr double group_pitch = 6.0;
 
 struct Label {

@@ -7,7 +7,6 @@ namespace penumbra::figures {
 
 namespace {
 
-constexpr double margin = 3.0;
 constexpr double least_row = 14.0;
 
 /// Where everything of a dot plot stands.

@@ -19,6 +19,7 @@ inline constexpr double text_size = 8.0;
 inline constexpr double heading_size = 9.0;
 inline constexpr double line_height = 9.6;
 inline constexpr double hairline = 0.5;
+inline constexpr double margin = 3.0;  ///< around everything
 
 // Greys for everything that is not data.
 inline constexpr const char* ink = "#1b1b1b";

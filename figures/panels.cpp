@@ -7,7 +7,6 @@ namespace penumbra::figures {
 
 namespace {
 
-constexpr double margin = 3.0;
 constexpr double gap = 10.0;
 
 }  // namespace

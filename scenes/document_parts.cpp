@@ -2,6 +2,7 @@
 
 #include "scenes/document.h"
 #include "scenes/json_reader.h"
+#include "scenes/json_text.h"
 
 namespace penumbra::scenes {
 namespace {
@@ -31,13 +32,6 @@ json name_of(const std::vector<std::pair<const char*, T>>& choices, T value) {
   throw unreadable("a value that has no name");
 }
 
-template <int N, class T>
-json list_of(const glm::vec<N, T>& vector) {
-  json list = json::array();
-  for (int i = 0; i < N; ++i) list.push_back(vector[i]);
-  return list;
-}
-
 bool independent(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::length(glm::cross(a, b)) > 1e-6 * glm::length(a) * glm::length(b);
 }
@@ -55,10 +49,10 @@ void read_extent(const json& value, const std::string& path, LightExtent& extent
 json write_light(const Light& light) {
   return {{"name", light.name},
           {"kind", name_of(light_kinds, light.kind)},
-          {"position", list_of(light.position)},
-          {"direction", list_of(light.direction)},
-          {"up", list_of(light.up)},
-          {"color", list_of(light.color)},
+          {"position", json_list(light.position)},
+          {"direction", json_list(light.direction)},
+          {"up", json_list(light.up)},
+          {"color", json_list(light.color)},
           {"intensity", light.intensity},
           {"attenuation", name_of(attenuations, light.attenuation)},
           {"inner_angle", light.inner_angle},
@@ -67,7 +61,7 @@ json write_light(const Light& light) {
           {"extent",
            {{"kind", name_of(extent_kinds, light.extent.kind)},
             {"radius", light.extent.radius},
-            {"size", list_of(light.extent.size)}}}};
+            {"size", json_list(light.extent.size)}}}};
 }
 
 void read_light(const json& value, const std::string& path, Light& light) {
@@ -112,9 +106,9 @@ void read_light(const json& value, const std::string& path, Light& light) {
 
 json write_camera(const Camera& camera) {
   return {{"name", camera.name},
-          {"position", list_of(camera.position)},
-          {"target", list_of(camera.target)},
-          {"up", list_of(camera.up)},
+          {"position", json_list(camera.position)},
+          {"target", json_list(camera.target)},
+          {"up", json_list(camera.up)},
           {"projection", name_of(projections, camera.projection)},
           {"vertical_fov", camera.vertical_fov},
           {"orthographic_height", camera.orthographic_height},
@@ -138,8 +132,8 @@ void read_camera(const json& value, const std::string& path, Camera& camera) {
 
 json write_material(const Material& material) {
   json value = {{"name", material.name},
-                {"base_color", list_of(material.base_color)},
-                {"emissive", list_of(material.emissive)},
+                {"base_color", json_list(material.base_color)},
+                {"emissive", json_list(material.emissive)},
                 {"alpha", material.alpha},
                 {"specular", material.specular},
                 {"shininess", material.shininess},
@@ -171,15 +165,15 @@ namespace {
 
 json write_shadow_plane(const ShadowPlane& plane) {
   json value = {{"name", plane.name},
-                {"center", list_of(plane.center)},
-                {"right", list_of(plane.right)},
-                {"up", list_of(plane.up)},
+                {"center", json_list(plane.center)},
+                {"right", json_list(plane.right)},
+                {"up", json_list(plane.up)},
                 {"size", {plane.size.x, plane.size.y}}};
   if (!plane.texture.empty()) value["texture"] = plane.texture;
   if (!plane.casters.empty()) value["casters"] = plane.casters;
   if (!plane.receivers.empty())
-    value["receivers"] = {{"low", list_of(plane.receivers.low)},
-                          {"high", list_of(plane.receivers.high)}};
+    value["receivers"] = {{"low", json_list(plane.receivers.low)},
+                          {"high", json_list(plane.receivers.high)}};
   return value;
 }
 
@@ -221,13 +215,13 @@ json write_surroundings(const Scene& scene) {
   json receivers = json::array();
   for (const PlanarReceiver& receiver : scene.receivers) {
     json corners = json::array();
-    for (const glm::dvec3& corner : receiver.corners) corners.push_back(list_of(corner));
+    for (const glm::dvec3& corner : receiver.corners) corners.push_back(json_list(corner));
     receivers.push_back({{"name", receiver.name}, {"corners", corners}});
   }
   json value = {{"receivers", receivers},
-                {"ambient", list_of(scene.ambient)},
-                {"background_low", list_of(scene.background_low)},
-                {"background_high", list_of(scene.background_high)},
+                {"ambient", json_list(scene.ambient)},
+                {"background_low", json_list(scene.background_low)},
+                {"background_high", json_list(scene.background_high)},
                 {"exposure", scene.exposure}};
   for (const ShadowPlane& plane : scene.shadow_planes)
     value["shadow_planes"].push_back(write_shadow_plane(plane));

@@ -7,6 +7,7 @@
 
 #include "renderer/error.h"
 #include "scenes/document.h"
+#include "scenes/json_text.h"
 #include "scenes/picture_io.h"
 
 namespace penumbra::scenes {
@@ -66,25 +67,19 @@ class BufferWriter {
   json accessors = json::array();
 };
 
-template <int N, class T>
-json list_of(const glm::vec<N, T>& vector) {
-  json list = json::array();
-  for (int i = 0; i < N; ++i) list.push_back(vector[i]);
-  return list;
-}
-
 json gltf_material(const Material& material) {
   // Roughness whose lobe is as wide as the exponent's; inverse of the import.
   const double roughness =
       std::sqrt(std::sqrt(2.0 / (static_cast<double>(material.shininess) + 2.0)));
-  json pbr = {{"baseColorFactor",
-               list_of(glm::vec4(glm::min(material.base_color, glm::vec3(1.0f)), material.alpha))},
-              {"metallicFactor", 0.0},
-              {"roughnessFactor", std::clamp(roughness, 0.0, 1.0)}};
+  json pbr = {
+      {"baseColorFactor",
+       json_list(glm::vec4(glm::min(material.base_color, glm::vec3(1.0f)), material.alpha))},
+      {"metallicFactor", 0.0},
+      {"roughnessFactor", std::clamp(roughness, 0.0, 1.0)}};
   if (material.texture >= 0) pbr["baseColorTexture"] = {{"index", material.texture}};
   json value = {{"name", material.name},
                 {"pbrMetallicRoughness", pbr},
-                {"emissiveFactor", list_of(glm::min(material.emissive, glm::vec3(1.0f)))},
+                {"emissiveFactor", json_list(glm::min(material.emissive, glm::vec3(1.0f)))},
                 {"doubleSided", material.double_sided}};
   if (material.alpha_mode == AlphaMode::mask) {
     value["alphaMode"] = "MASK";
@@ -133,7 +128,7 @@ json gltf_light(const Light& light) {
   static const char* const types[] = {"spot", "directional", "point"};
   json value = {{"name", light.name},
                 {"type", types[static_cast<int>(light.kind)]},
-                {"color", list_of(glm::min(light.color, glm::vec3(1.0f)))},
+                {"color", json_list(glm::min(light.color, glm::vec3(1.0f)))},
                 {"intensity", light.intensity}};
   if (light.range > 0.0 && light.kind != LightKind::directional) value["range"] = light.range;
   if (light.kind == LightKind::spot)

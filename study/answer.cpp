@@ -14,7 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t max_time_text = 40;  // ISO 8601 with fractions and zone, generously
-constexpr double max_ms = 1e10;            // four months
 constexpr int max_count = 1'000'000;
 
 std::string read_uuid(const json& body) {

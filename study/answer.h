@@ -9,6 +9,8 @@
 
 namespace penumbra::study {
 
+inline constexpr double max_ms = 1e10;  ///< of any time that a page takes: four months
+
 struct PageSize {
   double width = 0.0;
   double height = 0.0;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "figures/charts.h"
+#include "study/report/words.h"
 #include "study/statistics/agreement.h"
 #include "study/statistics/report.h"
 #include "study/statistics/subsets.h"
@@ -19,14 +20,9 @@ namespace {
 using figures::fixed_text;
 using figures::shown_number;
 using nlohmann::json;
+using report::number;
 
-std::optional<double> number(const json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
-}
-
-std::optional<figures::Interval> interval(const json& object, const char* key) {
+std::optional<figures::Interval> limits_of(const json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_array() || found->size() != 2) return std::nullopt;
   if (!(*found)[0].is_number() || !(*found)[1].is_number()) return std::nullopt;
@@ -118,7 +114,7 @@ class FigureMaker {
     for (const json& row : by_mean_rank(part)) {
       const std::string id = row.at("technique");
       row_of[id] = plot.rows.size();
-      plot.rows.push_back({label(id), number(row, "mean_rank"), interval(row, "ci95")});
+      plot.rows.push_back({label(id), number(row, "mean_rank"), limits_of(row, "ci95")});
       describe(plot.frame, label(id), number(row, "mean_rank"));
     }
     for (const json& subset : part.value("subsets", json::array())) {
@@ -255,7 +251,7 @@ class FigureMaker {
         if (!x || !y || (measure.logarithmic && !(*x > 0.0))) continue;
         const auto at = std::find(ids.begin(), ids.end(), id);
         panel.points.push_back(
-            {*x, *y, static_cast<std::size_t>(at - ids.begin()), interval(row, "ci95")});
+            {*x, *y, static_cast<std::size_t>(at - ids.begin()), limits_of(row, "ci95")});
         measured.push_back(measure.higher_is_better ? -*x : *x);
         perceived.push_back(*y);
       }
@@ -303,7 +299,7 @@ class FigureMaker {
       if (!time || !rank || !(*time > 0.0)) continue;
       const auto at = std::find(ids.begin(), ids.end(), id);
       chart.points.push_back(
-          {*time, *rank, static_cast<std::size_t>(at - ids.begin()), interval(row, "ci95")});
+          {*time, *rank, static_cast<std::size_t>(at - ids.begin()), limits_of(row, "ci95")});
     }
     chart.front = figures::lower_left_front(chart.points);
     for (const std::size_t index : chart.front)

@@ -141,7 +141,7 @@ Population population_of(const statistics::SurveyData& pilot, std::uint64_t seed
   auto fit = statistics::fit_plackett_luce(rankings, pilot.techniques.size());
   if (!fit.reason.empty()) {
     fit = statistics::fit_plackett_luce(rankings, pilot.techniques.size(),
-                                        statistics::pseudo_rankings);
+                                        statistics::default_pseudo_rankings);
   }
   if (!fit.reason.empty()) throw bad_value("PILOT", fit.reason);
   Population population;

@@ -73,8 +73,7 @@ std::string joined(const std::vector<int>& numbers) {
   return text;
 }
 
-constexpr double max_ms = 1e10;
-constexpr int max_count = 1'000'000'000;
+constexpr int max_cell_count = 1'000'000'000;
 
 Field text_field(const char* name, const char* meaning, std::string ResponseRow::*member,
                  bool required = false) {
@@ -92,7 +91,7 @@ Field count_field(const char* name, const char* meaning, int ResponseRow::*membe
           false,
           [member](const ResponseRow& row) { return std::to_string(row.*member); },
           [member](ResponseRow& row, const std::string& cell) {
-            row.*member = cell.empty() ? 0 : read_whole(cell, 0, max_count);
+            row.*member = cell.empty() ? 0 : read_whole(cell, 0, max_cell_count);
           }};
 }
 
@@ -186,10 +185,10 @@ const std::vector<Field>& response_fields() {
       text_field("preset", "technique or preset that was rendered", &Row::preset),
       text_field("parameters_hash", "hash of the parameters that the study gave the picture",
                  &Row::parameters_hash),
-      integer_field("slot", "position on the page, from 0", &Row::slot, 0, max_count),
+      integer_field("slot", "position on the page, from 0", &Row::slot, 0, max_cell_count),
       rank_field(),
       integer_field("shelf_0_is_most_realistic", "shelf the picture was put on", &Row::shelf, 0,
-                    max_count),
+                    max_cell_count),
       integer_field("digit_as_typed", "1 to 9, where digits were typed", &Row::digit, 1, 9),
       integer_field("difficulty_1_hard_to_see_5_easy", "answer about the page", &Row::difficulty, 1,
                     5, true),
@@ -198,9 +197,9 @@ const std::vector<Field>& response_fields() {
       real_field("active_ms", "milliseconds with the page in front and focused", &Row::active_ms),
       real_field("total_ms", "milliseconds from showing the page to its answer", &Row::total_ms),
       integer_field("enlarged", "how often a picture of the page was enlarged", &Row::enlarged, 0,
-                    max_count),
+                    max_cell_count),
       integer_field("flipped", "how often two pictures were flipped in place", &Row::flipped, 0,
-                    max_count),
+                    max_cell_count),
       swapped_field(),
       text_field("flags", "names of the participant's flags, separated by blanks", &Row::flags),
       included_field(),

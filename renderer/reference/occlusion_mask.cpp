@@ -17,12 +17,12 @@ constexpr std::uint64_t occluder_bytes = 96u << 20;
 /// Behind the two counts of each set: samples with more occluders than places.
 constexpr std::uint32_t overflow_place = 2 * shader::max_supersampling;
 
-struct Box {
+struct ExtentBox {
   glm::dvec3 low, high;
 };
 
 /// Box around the whole extent: positions, or directions of any length.
-Box extent_box(const WorldLight& light) {
+ExtentBox extent_box(const WorldLight& light) {
   const bool directional = light.kind == LightKind::directional;
   const glm::dvec3 half = extent_half_size(*light.source);
   const glm::dvec3 reach = glm::abs(light.right) * half.x + glm::abs(light.up) * half.y +
@@ -32,7 +32,7 @@ Box extent_box(const WorldLight& light) {
 }
 
 /// Widens a box by what rounding of points and receivers may do.
-void widen(Box& box, bool directional, const GpuScene& scene) {
+void widen(ExtentBox& box, bool directional, const GpuScene& scene) {
   double reach = 1.0;
   if (!directional) {
     const glm::dvec3 far =
@@ -53,12 +53,12 @@ shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   shader::ShaftData data{};
   const bool directional = context.light.kind == LightKind::directional;
   const auto points = points_of(context, set);
-  Box batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
+  ExtentBox batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
   for (std::uint32_t i = 0; i < context.points_in_batch; ++i) {
     batch.low = glm::min(batch.low, glm::dvec3(points[i]));
     batch.high = glm::max(batch.high, glm::dvec3(points[i]));
   }
-  Box whole = extent_box(context.light);
+  ExtentBox whole = extent_box(context.light);
   widen(batch, directional, context.scene);
   widen(whole, directional, context.scene);
   data.box_low = glm::vec4(batch.low, directional ? 0.0 : 1.0);

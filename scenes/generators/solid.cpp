@@ -10,7 +10,7 @@
 namespace penumbra::scenes {
 namespace {
 
-using Corner = std::tuple<std::uint32_t, float, float, float, float, float>;
+using SolidCorner = std::tuple<std::uint32_t, float, float, float, float, float>;
 
 glm::dvec3 face_vector(const Solid& solid, const std::array<std::uint32_t, 3>& triangle) {
   const glm::dvec3& a = solid.points[triangle[0]];
@@ -106,7 +106,7 @@ Mesh to_mesh(const Solid& solid, double crease, double uv_scale) {
   }
   const double least_cosine = circle(crease).x;
   Mesh mesh;
-  std::map<Corner, std::uint32_t> known;
+  std::map<SolidCorner, std::uint32_t> known;
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
     const glm::dvec3 own = glm::normalize(faces[t]);
     for (int k = 0; k < 3; ++k) {
@@ -119,7 +119,7 @@ Mesh to_mesh(const Solid& solid, double crease, double uv_scale) {
                                          ? box_uv(solid.points[point], own)
                                          : solid.uvs[t][static_cast<std::size_t>(k)]));
       const auto [entry, added] =
-          known.try_emplace(Corner{point, normal.x, normal.y, normal.z, uv.x, uv.y},
+          known.try_emplace(SolidCorner{point, normal.x, normal.y, normal.z, uv.x, uv.y},
                             static_cast<std::uint32_t>(mesh.positions.size()));
       if (added) {
         mesh.positions.emplace_back(solid.points[point]);

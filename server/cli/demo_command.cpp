@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-struct Options {
+struct DemoOptions {
   fs::path study;
   RenderServiceOptions service;
   fs::path pictures;
@@ -112,8 +112,7 @@ std::vector<Cell> draw_all(const study::Study& study, RenderService& service, do
       progress.show((static_cast<double>(i) + part) / static_cast<double>(plan.order.size()),
                     cell.page + ", " + cell.picture);
     };
-    const RenderRecord record =
-        draw(plan.requests[plan.order[i]], cell, service, deadline_s, show);
+    const RenderRecord record = draw(plan.requests[plan.order[i]], cell, service, deadline_s, show);
     cell.id = record.id;
     cell.cost = record.cost;
     cell.quality = record.quality;
@@ -153,7 +152,7 @@ std::string table_of(const std::vector<Cell>& cells,
   return table.text();
 }
 
-int demonstrate(const Session& session, const Options& options) {
+int demonstrate(const Session& session, const DemoOptions& options) {
   const study::Study study = read_study(options.study);
   const auto service = make_render_service(options.service);
   const fs::path folder =
@@ -184,7 +183,7 @@ int demonstrate(const Session& session, const Options& options) {
 }  // namespace
 
 void add_demo_command(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DemoOptions>();
   options->service.data = "data";
   CLI::App* command =
       app.add_subcommand("demo", "Draw and measure the pictures of a study, print the error table");

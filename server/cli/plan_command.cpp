@@ -12,7 +12,7 @@ std::string mebibytes(const json& bytes) {
   return number(bytes.get<double>() / (1 << 20), 2);
 }
 
-std::string text_of(const json& plan) {
+std::string plan_text(const json& plan) {
   if (!plan.at("supported"))
     return plan.at("technique").get<std::string>() +
            " cannot draw this: " + plan.at("reason").get<std::string>() + "\n";
@@ -36,7 +36,7 @@ void add_plan_command(CLI::App& app, Session& session) {
   command->callback([options, &session] {
     session.action = [options, &session] {
       const json plan = plan_document(options->read(false));
-      session.print(plan, text_of(plan));
+      session.print(plan, plan_text(plan));
       return 0;
     };
   });

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct PowerOptions {
   fs::path pilot;
   study::PowerPlan plan;
 };
@@ -55,7 +55,7 @@ nlohmann::json document_of(const study::Population& population, const study::Pow
   return document;
 }
 
-std::string text_of(const study::PowerPlan& plan, const study::PowerResult& result) {
+std::string power_text(const study::PowerPlan& plan, const study::PowerResult& result) {
   std::ostringstream text;
   text << std::setprecision(3);
   if (result.participants) {
@@ -69,7 +69,7 @@ std::string text_of(const study::PowerPlan& plan, const study::PowerResult& resu
   return text.str();
 }
 
-int look_up(const Session& session, const Options& options) {
+int look_up(const Session& session, const PowerOptions& options) {
   const auto text = read_whole(options.pilot);
   if (!text) throw unreadable("cannot read " + options.pilot.string(), "PILOT");
   study::statistics::Gatherer gatherer;
@@ -79,14 +79,14 @@ int look_up(const Session& session, const Options& options) {
   show(0.0, "fitting the pilot");
   const auto population = study::population_of(gatherer.finish(), options.plan.seed);
   const auto result = study::participants_needed(population, options.plan, show);
-  session.print(document_of(population, options.plan, result), text_of(options.plan, result));
+  session.print(document_of(population, options.plan, result), power_text(options.plan, result));
   return 0;
 }
 
 }  // namespace
 
 void add_power_command(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PowerOptions>();
   CLI::App* command =
       app.add_subcommand("power", "How many participants a study needs, from a pilot's answers");
   command->add_option("PILOT", options->pilot, "CSV of answers, as `statistics` reads it")

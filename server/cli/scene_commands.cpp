@@ -26,7 +26,7 @@ json summary(const Scene& scene) {
           {"notes", scene.notes}};
 }
 
-std::string text_of(const json& document) {
+std::string scene_text(const json& document) {
   std::string text = document.at("id").get<std::string>() + ": " + document.at("triangles").dump() +
                      " triangles in " + document.at("instances").dump() + " instances, " +
                      std::to_string(document.at("lights").size()) + " lights, " +
@@ -48,7 +48,7 @@ int import_scene(const Session& session, const fs::path& file, const std::string
   document.erase("replaced");
   document["id"] = id;
   document["notes"] = scene->notes;
-  session.print(document, text_of(document));
+  session.print(document, scene_text(document));
   return 0;
 }
 
@@ -61,11 +61,11 @@ int export_scene(const Session& session, const std::string& name, const fs::path
   write_durably(out, temporary, scenes::encode_glb(*scene));
   json document = summary(*scene);
   document["out"] = out.string();
-  session.print(document, text_of(document) + "wrote " + out.string() + "\n");
+  session.print(document, scene_text(document) + "wrote " + out.string() + "\n");
   return 0;
 }
 
-struct Options {
+struct SceneOptions {
   std::string scene;
   fs::path file;
   fs::path out;
@@ -76,7 +76,7 @@ struct Options {
 }  // namespace
 
 void add_scene_commands(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SceneOptions>();
   CLI::App* import =
       app.add_subcommand("import", "Take a scene from a glTF, GLB, OBJ or scene file");
   import->add_option("FILE", options->file, ".gltf, .glb, .obj, or a scene document .json")

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SimulateOptions {
   fs::path study;
   fs::path out;
   std::string url;
@@ -26,7 +26,7 @@ struct Options {
   double step = 0.5;
 };
 
-std::string token_of(const Options& options) {
+std::string token_of(const SimulateOptions& options) {
   if (options.token_file.empty()) return {};
   auto token = read_whole(options.token_file);
   if (!token) throw unreadable("cannot read " + options.token_file.string(), "--token-file");
@@ -35,7 +35,7 @@ std::string token_of(const Options& options) {
 }
 
 /// Fills the study on a running server, one person after another.
-void fill_server(const Options& options, const study::Study& study,
+void fill_server(const SimulateOptions& options, const study::Study& study,
                  const std::vector<study::SimulatedPerson>& people,
                  const study::Preferences& preferences) {
   StudyClient client(options.url, token_of(options));
@@ -47,7 +47,7 @@ void fill_server(const Options& options, const study::Study& study,
   }
 }
 
-int simulate(const Session& session, const Options& options) {
+int simulate(const Session& session, const SimulateOptions& options) {
   if (options.out.empty() && options.url.empty())
     throw bad_value("--url", "give a server's address, or a file with --out");
   const auto text = read_whole(options.study);
@@ -76,7 +76,7 @@ int simulate(const Session& session, const Options& options) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   CLI::App* command =
       app.add_subcommand("simulate-study", "Answers of people with known preferences to a study");
   command->add_option("STUDY", options->study, "Study file (JSON)")

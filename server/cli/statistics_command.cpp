@@ -20,14 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct StatisticsOptions {
   fs::path responses;
   fs::path measures;
   fs::path out;
   std::string separator;
 };
 
-std::string text_of(const fs::path& path, const char* field) {
+std::string file_text(const fs::path& path, const char* field) {
   auto text = read_whole(path);
   if (!text) throw unreadable("cannot read " + path.string(), field);
   return std::move(*text);
@@ -36,11 +36,11 @@ std::string text_of(const fs::path& path, const char* field) {
 const std::map<std::string, char> separators{
     {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {",", ','}, {";", ';'}};
 
-int analyse(const Session& session, const Options& given) {
-  const std::string text = text_of(given.responses, "RESPONSES");
+int analyse(const Session& session, const StatisticsOptions& given) {
+  const std::string text = file_text(given.responses, "RESPONSES");
   study::ReportOptions options;
   if (!given.measures.empty()) {
-    options.measures = study::parse_measures(text_of(given.measures, "--measures"));
+    options.measures = study::parse_measures(file_text(given.measures, "--measures"));
   }
   std::optional<char> separator;
   if (!given.separator.empty()) separator = separators.at(given.separator);
@@ -79,7 +79,7 @@ int analyse(const Session& session, const Options& given) {
 }  // namespace
 
 void add_statistics_command(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StatisticsOptions>();
   CLI::App* command = app.add_subcommand("statistics", "Analyse the answers to a ranking survey");
   command->add_option("RESPONSES", options->responses, "CSV with a row per picture ranked")
       ->required()

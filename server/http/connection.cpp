@@ -9,7 +9,7 @@
 namespace penumbra::server::http {
 namespace {
 
-constexpr std::size_t block = 16 << 10;         // bytes received at once
+constexpr std::size_t head_block = 16 << 10;    // bytes received at once
 constexpr std::size_t most_blocks = 8;          // before others have their turn
 constexpr std::size_t most_dropped = 64 << 20;  // bytes of a refused client that are read
 constexpr std::size_t unjudged = 4096;          // bytes of one line before it is looked at again
@@ -26,7 +26,7 @@ Connection::~Connection() {
 Connection::State Connection::receive(std::span<const std::string> methods) {
   auto state = judge(methods);  // of what came behind the last request
   for (std::size_t i = 0; state == State::waiting && i < most_blocks; ++i) {
-    std::array<char, block> bytes;
+    std::array<char, head_block> bytes;
     const auto count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::waiting;
@@ -111,7 +111,7 @@ void Connection::part(const std::string& answer) {
 }
 
 bool Connection::drop_rest() {
-  std::array<char, block> bytes;
+  std::array<char, head_block> bytes;
   while (dropped < most_dropped) {
     const auto count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (count < 0 && errno == EINTR) continue;

@@ -106,7 +106,7 @@ constexpr char linear[] = "image.exr";
 constexpr char visibility[] = "visibility.exr";
 constexpr char difference[] = "error.png";
 
-std::string media_type(const std::string& name) {
+std::string artefact_type(const std::string& name) {
   return name.ends_with(".png") ? "image/png" : "image/x-exr";
 }
 
@@ -200,7 +200,7 @@ void send_artefact(Call& call, const RenderRecord& record, const std::string& na
   response.status = 200;
   // All that send it share one copy.
   response.set_content_provider(
-      bytes->size(), media_type(name),
+      bytes->size(), artefact_type(name),
       [bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         return sink.write(bytes->data() + offset, length);
       });

@@ -20,8 +20,8 @@
 namespace penumbra::server::http {
 namespace {
 
-constexpr std::size_t block = 64 << 10;  // bytes received at once
-constexpr int glance_ms = 250;           // between two looks at what else happened
+constexpr std::size_t body_block = 64 << 10;  // bytes received at once
+constexpr int glance_ms = 250;                // between two looks at what else happened
 
 thread_local RequestStream* of_this_thread = nullptr;
 
@@ -128,7 +128,7 @@ bool RequestStream::receive() {
   auto& framing = connection.framing;
   if (framing.done() || framing.broken() || failed) return false;
   connection.tell_to_continue();
-  std::array<char, block> bytes;
+  std::array<char, body_block> bytes;
   auto last = Connection::Clock::now();
   while (true) {
     const auto count = ::recv(connection.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);

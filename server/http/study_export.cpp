@@ -70,8 +70,7 @@ json person_json(const FrozenStudy& frozen, const storage::ParticipantData& pers
     const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
     const auto& page = study::page_of(frozen.study, planned);
     json pictures = json::array();
-    for (const std::size_t picture : planned.slots)
-      pictures.push_back(page.pictures.at(picture).id);
+    for (const std::size_t number : planned.slots) pictures.push_back(page.pictures.at(number).id);
     json earlier = json::array();
     for (const auto& replaced : person.replaced)
       if (replaced.page == stored.page) earlier.push_back(answer_json(replaced));

@@ -105,7 +105,7 @@ void get_sweep(Call& call) {
   send_json(call.response, 200, body_of_sweep(sweep_at(call)));
 }
 
-void get_results(Call& call) {
+void get_sweep_results(Call& call) {
   const auto rows = call.service.sweeps.results(call.path.at("id"));
   if (!rows) throw nothing_here();
   call.response.status = 200;
@@ -283,7 +283,7 @@ void add_sweep_routes(std::vector<Route>& table) {
   const std::string one = "/api/v1/sweeps/{id}";
   table.push_back({"POST", "/api/v1/sweeps", Access::researcher, post_sweep});
   table.push_back({"GET", one, Access::researcher, get_sweep});
-  table.push_back({"GET", one + "/results.csv", Access::researcher, get_results});
+  table.push_back({"GET", one + "/results.csv", Access::researcher, get_sweep_results});
   table.push_back({"GET", one + "/events", Access::researcher, get_sweep_events});
 }
 

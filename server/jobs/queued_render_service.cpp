@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "renderer/error.h"
+#include "server/jobs/deadline.h"
 #include "server/jobs/memory_budget.h"
 
 namespace penumbra::server {
@@ -27,12 +28,6 @@ Error busy(const std::string& message) {
 
 bool share_one(const std::set<std::string>& a, const std::set<std::string>& b) {
   return std::any_of(a.begin(), a.end(), [&](const std::string& key) { return b.contains(key); });
-}
-
-steady_clock::time_point after(double seconds) {
-  // A day is as good as for ever, and does not overflow.
-  const std::chrono::duration<double> wait(std::clamp(seconds, 0.0, 86400.0));
-  return steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(wait);
 }
 
 WorkerCommand command_of(const RenderServiceOptions& options) {

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "renderer/error.h"
+#include "server/jobs/deadline.h"
 #include "server/jobs/drawing_version.h"
 #include "server/jobs/memory_budget.h"
 
@@ -10,13 +11,7 @@ namespace penumbra::server {
 namespace {
 
 using nlohmann::json;
-using std::chrono::duration;
-using std::chrono::duration_cast;
 using std::chrono::steady_clock;
-
-steady_clock::time_point after(double seconds) {
-  return steady_clock::now() + duration_cast<steady_clock::duration>(duration<double>(seconds));
-}
 
 std::unique_ptr<ChildProcess> start(const WorkerCommand& command) {
   try {

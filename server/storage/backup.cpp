@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* manifest_name = "manifest.json";
-constexpr int busy_ms = 10000;
+constexpr int copy_busy_ms = 10000;
 
 using Archive = std::unique_ptr<zip_t, decltype(&zip_discard)>;
 
@@ -86,7 +86,7 @@ void check_database(const fs::path& data, Owner owner, std::vector<std::string>&
   const auto key = read_whole(data / key_name);
   if (!key) return wrong.push_back("integrity.key is missing");
   if (fs::file_size(data / database_name) == 0) return wrong.push_back("the database is empty");
-  SQLite::Database connection((data / database_name).string(), SQLite::OPEN_READONLY, busy_ms);
+  SQLite::Database connection((data / database_name).string(), SQLite::OPEN_READONLY, copy_busy_ms);
   if (const auto state = connection.execAndGet("PRAGMA integrity_check").getString(); state != "ok")
     return wrong.push_back("the database's structure is damaged: " + state);
   Seals(*key).add_function(connection);
@@ -173,8 +173,8 @@ std::vector<std::string> copy_folder(const fs::path& data, const fs::path& copy)
   make_private_folder(copy);
   write_file_durably(copy / database_name, "");  // SQLite would make it as the umask allows
   {
-    SQLite::Database source((data / database_name).string(), SQLite::OPEN_READONLY, busy_ms);
-    SQLite::Database target((copy / database_name).string(), SQLite::OPEN_READWRITE, busy_ms);
+    SQLite::Database source((data / database_name).string(), SQLite::OPEN_READONLY, copy_busy_ms);
+    SQLite::Database target((copy / database_name).string(), SQLite::OPEN_READWRITE, copy_busy_ms);
     SQLite::Backup(target, source).executeStep(-1);
   }
   for (const char* name : {key_name, token_name})
@@ -183,7 +183,7 @@ std::vector<std::string> copy_folder(const fs::path& data, const fs::path& copy)
   copy_files(data / "scenes", copy / "scenes");
   if (const auto key = read_whole(data / key_name)) {
     // The journal up to the copy's last commit: the original may have gone on since.
-    SQLite::Database target((copy / database_name).string(), SQLite::OPEN_READONLY, busy_ms);
+    SQLite::Database target((copy / database_name).string(), SQLite::OPEN_READONLY, copy_busy_ms);
     Seals(*key).add_function(target);
     Seals::add_views(target);
     const Journal original(data / journal_name, *key);

@@ -73,11 +73,11 @@ std::string in_math(const std::string& text) {
   return text == "–" ? "--" : "$" + text + "$";
 }
 
-std::string decimal(const std::optional<double>& value, int decimals) {
+std::string decimal_in_math(const std::optional<double>& value, int decimals) {
   return in_math(value ? figures::fixed_text(*value, decimals) : "–");
 }
 
-std::string interval(const json& object, const char* key) {
+std::string interval_in_math(const json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_array() || !(*found)[0].is_number()) return "--";
   return "$[" + figures::fixed_text((*found)[0], 2) + ", " + figures::fixed_text((*found)[1], 2) +
@@ -104,8 +104,9 @@ std::string means_table(const json& part, const std::string& where, const Names&
   for (const json& row : part.at("techniques")) {
     const std::string id = row.at("technique");
     text += latex_text(names(id)) + " & " + std::to_string(row.value("n", 0)) + " & " +
-            decimal(number(row, "mean_rank"), 2) + " & " + decimal(number(row, "sd"), 2) + " & " +
-            interval(row, "ci95") + " & " + decimal(number(row, "weighted_mean_rank"), 2) + " & " +
+            decimal_in_math(number(row, "mean_rank"), 2) + " & " +
+            decimal_in_math(number(row, "sd"), 2) + " & " + interval_in_math(row, "ci95") + " & " +
+            decimal_in_math(number(row, "weighted_mean_rank"), 2) + " & " +
             latex_text(letters.value(id, "")) + " \\\\\n";
   }
   return text + end_table;
@@ -134,12 +135,13 @@ std::string pairs_table(const json& part, const std::string& where, const Names&
     const json& sign = found != nullptr ? *found : nothing;
     text += latex_text(names(a)) + " & " + latex_text(names(b)) + " & " +
             std::to_string(test.value("n", 0)) + " & " +
-            decimal(number(test, "mean_difference"), 2) + " & " + decimal(number(test, "t"), 2) +
-            " & " + in_math(report::probability(number(test, "p_bonferroni"))) + " & " +
-            decimal(number(wilcoxon, "statistic_v"), 1) + " & " +
+            decimal_in_math(number(test, "mean_difference"), 2) + " & " +
+            decimal_in_math(number(test, "t"), 2) + " & " +
+            in_math(report::probability(number(test, "p_bonferroni"))) + " & " +
+            decimal_in_math(number(wilcoxon, "statistic_v"), 1) + " & " +
             in_math(report::probability(number(wilcoxon, "p_holm"))) + " & " +
-            decimal(number(sign, "probability_a_better"), 2) + " & " + interval(sign, "ci95") +
-            " \\\\\n";
+            decimal_in_math(number(sign, "probability_a_better"), 2) + " & " +
+            interval_in_math(sign, "ci95") + " \\\\\n";
   }
   return text + end_table;
 }

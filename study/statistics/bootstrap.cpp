@@ -15,7 +15,7 @@ constexpr std::uint32_t stream_means = 200;
 constexpr std::uint32_t stream_concordance = 201;
 constexpr std::uint32_t stream_permutations = 202;
 
-constexpr std::size_t most_draws = 20'000'000;  ///< rows drawn for one table
+constexpr std::size_t most_draws = 5'000'000;  ///< rows drawn for one table
 constexpr std::size_t fewest_resamples = 500;
 constexpr std::size_t most_arrangements = 50'000;  ///< counted out one by one
 constexpr std::size_t few_blocks = 30;             ///< beyond, chi-square serves

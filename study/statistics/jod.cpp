@@ -14,10 +14,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double sigma = 1.4826022185056018;  ///< 1 / quantile(0.75): P = 0.75 at a distance of 1
-constexpr double prior_floor = 0.1;           ///< added to the prior, theirs
-constexpr double most_jod = 20.0;             ///< a score beyond runs off to infinity
-constexpr int most_steps = 500;
+constexpr double case_five_sigma =
+    1.4826022185056018;              ///< 1 / quantile(0.75): P = 0.75 at a distance of 1
+constexpr double prior_floor = 0.1;  ///< added to the prior, theirs
+constexpr double most_jod = 20.0;    ///< a score beyond runs off to infinity
+constexpr int most_newton_steps = 500;
 
 double density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2.0 * 3.14159265358979323846);
@@ -42,15 +43,16 @@ struct Chance {
 };
 
 Chance chance_at(double distance) {
-  const double x = distance / sigma;
+  const double x = distance / case_five_sigma;
   const double win = normal_tail(-x);
   const double loss = normal_tail(x);
-  return {std::log(win), std::log(loss), density(x) / (sigma * win), -density(x) / (sigma * loss)};
+  return {std::log(win), std::log(loss), density(x) / (case_five_sigma * win),
+          -density(x) / (case_five_sigma * loss)};
 }
 
-class Model {
+class ThurstoneModel {
  public:
-  Model(const Table& wins, bool prior_)
+  ThurstoneModel(const Table& wins, bool prior_)
       : items(static_cast<Eigen::Index>(wins.size())), prior(prior_) {
     for (std::size_t a = 0; a < wins.size(); ++a) {
       for (std::size_t b = 0; b < wins.size(); ++b) {
@@ -140,13 +142,13 @@ Eigen::MatrixXd inverse_of_distances(const Eigen::MatrixXd& information) {
 }
 
 /// Steps by Fisher's scoring, halved until they gain; the likelihood alone is concave.
-bool maximise(const Model& model, Eigen::VectorXd& scores) {
-  Model::Value value = model.evaluate(scores);
-  for (int i = 0; i < most_steps; ++i) {
+bool maximise_scores(const ThurstoneModel& model, Eigen::VectorXd& scores) {
+  ThurstoneModel::Value value = model.evaluate(scores);
+  for (int i = 0; i < most_newton_steps; ++i) {
     Eigen::VectorXd step = inverse_of_distances(value.information) * value.gradient;
     if (!step.allFinite()) return false;
     if (value.gradient.dot(step) < 1e-13 * (1.0 + std::abs(value.objective))) return true;
-    Model::Value next = model.evaluate(scores + step);
+    ThurstoneModel::Value next = model.evaluate(scores + step);
     for (int half = 0; half < 40 && !(next.objective > value.objective); ++half) {
       step *= 0.5;
       next = model.evaluate(scores + step);
@@ -186,7 +188,7 @@ std::vector<double> robust_errors(const std::vector<Ranking>& rankings,
   const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(jod.data(), n);
   // The model counts every pair in both directions, the scores once.
   const Eigen::MatrixXd bread = inverse_of_distances(
-      0.5 * Model(wins_of(rankings, jod.size()), false).evaluate(at).information);
+      0.5 * ThurstoneModel(wins_of(rankings, jod.size()), false).evaluate(at).information);
   const Eigen::MatrixXd covariance = bread * filling * bread;
   std::vector<double> errors;
   for (Eigen::Index i = 0; i < n; ++i) errors.push_back(std::sqrt(std::max(0.0, covariance(i, i))));
@@ -213,7 +215,7 @@ JodScale scale_jod(const Table& wins, bool prior) {
     return scale;
   }
   Eigen::VectorXd scores = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wins.size()));
-  if ((!prior && !comparable.bounded) || !maximise(Model(wins, prior), scores)) {
+  if ((!prior && !comparable.bounded) || !maximise_scores(ThurstoneModel(wins, prior), scores)) {
     scale.reason = "some techniques beat all others every time: their distance is unbounded";
     return scale;
   }

@@ -113,9 +113,10 @@ bool strongly_connected(const Choices& choices, std::size_t items) {
 
 /// The log-linear model: parameters are the log worths of items 1 .. n-1 (item 0 is the reference)
 /// and the log prevalence of each tie order that occurs.
-class Model {
+class PlackettLuceModel {
  public:
-  Model(const Choices& choices_, std::size_t items_) : choices(choices_), items(items_) {
+  PlackettLuceModel(const Choices& choices_, std::size_t items_)
+      : choices(choices_), items(items_) {
     for (std::uint32_t i = 0; i < choices.chosen.size(); ++i) {
       if (choices.chosen[i].size() > 1) orders.insert(choices.chosen[i].size());
     }
@@ -241,9 +242,9 @@ class Model {
 };
 
 /// Newton's method with step halving; the log-likelihood is concave. False where it runs off.
-bool maximise(const Model& model, Eigen::VectorXd& parameters) {
+bool maximise(const PlackettLuceModel& model, Eigen::VectorXd& parameters) {
   parameters = Eigen::VectorXd::Zero(model.size());
-  Model::Value value = model.evaluate(parameters);
+  PlackettLuceModel::Value value = model.evaluate(parameters);
   for (int i = 0; i < most_steps; ++i) {
     const Eigen::LDLT<Eigen::MatrixXd> solver(value.information);
     if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
@@ -255,7 +256,7 @@ bool maximise(const Model& model, Eigen::VectorXd& parameters) {
       parameters += step;
       return true;
     }
-    Model::Value next = model.evaluate(parameters + step);
+    PlackettLuceModel::Value next = model.evaluate(parameters + step);
     for (int half = 0; half < 40 && next.log_likelihood < value.log_likelihood; ++half) {
       step *= 0.5;
       next = model.evaluate(parameters + step);
@@ -277,7 +278,7 @@ bool maximise_with_pseudo(std::vector<Ranking> rankings, std::size_t items, doub
     rankings.push_back({{{items}, {i}}, pseudo_rankings, 0});
   }
   const Choices choices(rankings);
-  const Model model(choices, items + 1);
+  const PlackettLuceModel model(choices, items + 1);
   Eigen::VectorXd all;
   if (model.overflows() || !maximise(model, all)) return false;
   const auto n = static_cast<Eigen::Index>(items);
@@ -317,14 +318,14 @@ PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t
   if (!regularised && !strongly_connected(choices, items)) {
     return without_fit("some techniques beat all others every time: worths are unbounded");
   }
-  const Model model(choices, items);
+  const PlackettLuceModel model(choices, items);
   if (model.overflows()) return without_fit("too many sets of techniques could tie");
   Eigen::VectorXd parameters;
   const bool found = regularised
                          ? maximise_with_pseudo(rankings, items, pseudo_rankings, parameters)
                          : maximise(model, parameters);
   if (!found) return without_fit("no finite maximum of the likelihood");
-  const Model::Value value = model.evaluate(parameters);
+  const PlackettLuceModel::Value value = model.evaluate(parameters);
   const Eigen::MatrixXd inverse = value.information.inverse();
   if (!(inverse.diagonal().maxCoeff() < most_variance)) {
     return without_fit("no finite maximum of the likelihood");

@@ -121,8 +121,8 @@ Table wins_of(const std::vector<Ranking>& rankings, std::size_t items) {
 json worths_json(const std::vector<Ranking>& rankings, const std::vector<std::string>& techniques) {
   json result = fit_json(fit_plackett_luce(rankings, techniques.size()), techniques);
   result["regularised"] =
-      fit_json(fit_plackett_luce(rankings, techniques.size(), pseudo_rankings), techniques);
-  result["regularised"]["pseudo_rankings"] = pseudo_rankings;
+      fit_json(fit_plackett_luce(rankings, techniques.size(), default_pseudo_rankings), techniques);
+  result["regularised"]["pseudo_rankings"] = default_pseudo_rankings;
   result["bradley_terry"] = bradley_terry_json(wins_of(rankings, techniques.size()), techniques);
   return result;
 }

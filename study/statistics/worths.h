@@ -11,7 +11,7 @@
 namespace penumbra::study::statistics {
 
 /// Imaginary comparisons of the regularised fit; the default of the R package PlackettLuce.
-inline constexpr double pseudo_rankings = 0.5;
+inline constexpr double default_pseudo_rankings = 0.5;
 
 /// Every page of the selection as one ranking of `techniques`, clustered by participant.
 std::vector<Ranking> rankings_of(const SurveyData& data, const Selection& selection,
