@@ -1,0 +1,298 @@
+#include "experiments/engine/engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+#include "experiments/engine/versions.h"
+#include "renderer/error.h"
+#include "renderer/metrics/metrics.h"
+#include "scenes/json_text.h"
+#include "scenes/library.h"
+#include "scenes/picture_io.h"
+#include "techniques/parameter_schema.h"
+
+namespace penumbra::experiments {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+/// Changes with how runs are measured, where no digest tells.
+constexpr int protocol = 1;
+
+/// A time of `none` that is older is taken again: clocks and other work change meanwhile.
+constexpr double baseline_s = 20.0;
+
+const char* name_of(Truth truth) {
+  return truth == Truth::area ? "area" : truth == Truth::hard ? "hard" : "none";
+}
+
+/// Families whose first technique draws the truth.
+const char* family_of(Truth truth) {
+  return truth == Truth::area ? "truth" : "traced";
+}
+
+std::string view_of(const Run& run) {
+  return std::to_string(run.width) + "x" + std::to_string(run.height) + " " +
+         std::to_string(run.light_samples) + " " + name_of(run.truth);
+}
+
+json asked(const Run& run, const techniques::Resolved& technique) {
+  return {{"scene", run.scene},
+          {"technique", run.technique},
+          {"name", run.name.empty() ? run.technique : run.name},
+          {"label", technique.label},
+          {"family", technique.technique->family},
+          {"given", techniques::values_to_json(run.parameters)},
+          {"width", run.width},
+          {"height", run.height},
+          {"truth", name_of(run.truth)}};
+}
+
+void add_cost(json& row, const Cost& cost) {
+  row["frame_ms"] = cost.median_ms;
+  row["p95_ms"] = cost.p95_ms;
+  row["spread"] = cost.spread;
+  row["frames"] = cost.frames;
+  row["create_ms"] = cost.create_ms;
+  std::uint64_t bytes = 0;
+  for (const ResourceCost& resource : cost.technique_memory) bytes += resource.bytes;
+  row["memory_bytes"] = bytes;
+  std::uint64_t vertices = 0, primitives = 0, geometry = 0, fragments = 0, compute = 0;
+  json passes = json::array();
+  for (const PassCost& pass : cost.passes) {
+    vertices += pass.vertex_invocations;
+    primitives += pass.primitives;
+    geometry += pass.geometry_primitives;
+    fragments += pass.fragment_invocations;
+    compute += pass.compute_invocations;
+    passes.push_back({{"name", pass.name},
+                      {"median_ms", pass.median_ms},
+                      {"fragments", pass.fragment_invocations},
+                      {"primitives", pass.primitives}});
+  }
+  row["vertices"] = vertices;
+  row["primitives"] = primitives;
+  row["geometry_primitives"] = geometry;
+  row["fragments"] = fragments;
+  row["compute"] = compute;
+  row["passes"] = passes;
+}
+
+}  // namespace
+
+const TechniqueDescription& technique_of_family(const std::string& family) {
+  for (const TechniqueDescription& technique : techniques::all())
+    if (technique.family == family) return technique;
+  throw std::logic_error("no technique of family " + family);
+}
+
+bool is_baseline(const Run& run) {
+  return run.technique == technique_of_family("none").id;
+}
+
+Engine::Engine(EngineOptions options)
+    : options_(std::move(options)),
+      results_([this] {
+        std::error_code failed;
+        std::filesystem::create_directories(options_.folder / "pictures", failed);
+        if (failed)
+          throw Error("unwritable",
+                      "cannot make " + options_.folder.string() + ": " + failed.message(), "out");
+        return options_.folder / "results.jsonl";
+      }()),
+      renderer_(RendererOptions{options_.device}),
+      timer_(renderer_, options_.timing) {}
+
+std::shared_ptr<const Scene> Engine::scene(const std::string& name) {
+  if (name != scene_name_ || !scene_) {
+    scene_ = scenes::load(name, options_.data);
+    scene_hash_ = scenes::content_hash(*scene_);
+    scene_name_ = name;
+    judges_.clear();
+    baselines_.clear();
+  }
+  return scene_;
+}
+
+json Engine::key_of(const Run& run, const techniques::Resolved& technique) {
+  scene(run.scene);
+  json key = {{"protocol", protocol},
+              {"device", renderer_.device().name},
+              {"driver", renderer_.device().driver},
+              {"scene", scene_hash_},
+              {"technique", technique.technique->id},
+              {"version", technique_version(technique.technique->id)},
+              {"parameters", techniques::values_to_json(technique.parameters)},
+              {"width", run.width},
+              {"height", run.height},
+              {"light_samples", run.light_samples},
+              {"run_ms", options_.timing.run_ms},
+              {"picture", run.picture},
+              {"truth", name_of(run.truth)}};
+  if (run.truth != Truth::none)
+    key["truth_version"] = technique_version(technique_of_family(family_of(run.truth)).id);
+  return key;
+}
+
+json Engine::measure(const Run& run) {
+  const techniques::Resolved technique = techniques::resolve(run.technique, run.parameters);
+  const std::string key = scenes::json_text(key_of(run, technique));
+  // Names are the asker's: two names of one thing share a measurement.
+  json row = asked(run, technique);
+  const json* known = results_.find(key);
+  if (known == nullptr) {
+    const json fresh = measure_now(run, technique);
+    results_.add(key, fresh);
+    ++measured_;
+    known = results_.find(key);
+  }
+  row.update(*known);
+  return row;
+}
+
+RenderRequest Engine::request_of(const Run& run, const techniques::Resolved& technique) {
+  RenderRequest request;
+  request.scene = scene(run.scene);
+  request.technique = technique.technique;
+  request.parameters = technique.parameters;
+  request.width = run.width;
+  request.height = run.height;
+  request.light_samples = run.light_samples;
+  request.visibility = run.truth != Truth::none;
+  return request;
+}
+
+const Engine::Judge& Engine::judge_of(const Run& run) {
+  const auto [place, fresh] = judges_.try_emplace(view_of(run));
+  if (!fresh) return place->second;
+  try {
+    const RenderResult drawn = renderer_.render(
+        request_of(run, techniques::resolve(technique_of_family(family_of(run.truth)).id)));
+    place->second = {drawn.picture, drawn.visibility};
+  } catch (...) {
+    judges_.erase(place);
+    throw;
+  }
+  return place->second;
+}
+
+const Engine::Baseline& Engine::baseline_of(const Run& run) {
+  Baseline& baseline = baselines_[view_of(run)];
+  const auto now = Clock::now();
+  if (baseline.ms == 0.0 ||
+      std::chrono::duration<double>(now - baseline.when).count() > baseline_s) {
+    RenderRequest request = request_of(run, techniques::resolve(technique_of_family("none").id));
+    request.visibility = false;
+    const Cost cost = timer_.time(request).cost;
+    baseline = {cost.median_ms, cost.settled, Clock::now()};
+  }
+  return baseline;
+}
+
+json Engine::measure_now(const Run& run, const techniques::Resolved& technique) {
+  json row = {{"status", "done"}, {"error", nullptr}};
+  try {
+    // The truth first: nothing may come between the times of `none` and of the technique.
+    const Judge* judge = run.truth == Truth::none ? nullptr : &judge_of(run);
+    std::shared_ptr<void> alone = options_.alone ? options_.alone() : nullptr;
+    const Baseline before = is_baseline(run) ? Baseline{} : baseline_of(run);
+    const RenderResult drawn = timer_.time(request_of(run, technique));
+    alone.reset();
+    add_cost(row, drawn.cost);
+    const double none_ms = is_baseline(run) ? drawn.cost.median_ms : before.ms;
+    row["settled"] = drawn.cost.settled && before.settled;
+    row["none_ms"] = none_ms;
+    row["over_none"] = none_ms > 0.0 ? json(drawn.cost.median_ms / none_ms) : json(nullptr);
+    if (is_baseline(run)) baselines_[view_of(run)] = {none_ms, drawn.cost.settled, Clock::now()};
+    if (judge != nullptr) {
+      const auto error =
+          metrics::visibility_error(drawn.visibility, judge->visibility, drawn.judged);
+      row["rms_y"] = metrics::rms_y(drawn.picture, judge->picture);
+      row["flip"] = metrics::flip(drawn.picture, judge->picture);
+      row["visibility_rms"] = error.rms;
+      row["false_shadow"] = error.false_shadow;
+      row["missing_shadow"] = error.missing_shadow;
+    }
+    if (run.picture) {
+      char name[32];
+      std::snprintf(name, sizeof name, "pictures/%05zu.png", results_.size());
+      scenes::write_picture(options_.folder / name, drawn.picture);
+      row["picture"] = name;
+    }
+  } catch (const Error& error) {
+    if (error.code == "device" || error.code == "unwritable" || error.field == "out") throw;
+    row["status"] = "failed";
+    row["error"] = {{"code", error.code}, {"message", error.what()}, {"field", error.field}};
+  }
+  return row;
+}
+
+std::vector<std::string> parts_of(const std::string& list, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string part; std::getline(in, part, separator);) {
+    const auto first = part.find_first_not_of(" \t");
+    if (first == std::string::npos) continue;
+    parts.push_back(part.substr(first, part.find_last_not_of(" \t") - first + 1));
+  }
+  return parts;
+}
+
+NamedTechnique read_technique(const std::string& text) {
+  const auto parts = parts_of(text, ':');
+  if (parts.empty()) throw bad_value("techniques", "a technique's id is empty");
+  NamedTechnique technique{text, parts.front(), {}};
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const auto sign = parts[i].find('=');
+    if (sign == std::string::npos)
+      throw bad_value("techniques",
+                      "'" + text + "': a parameter is written NAME=VALUE, not '" + parts[i] + "'");
+    technique.parameters[parts[i].substr(0, sign)] = parts[i].substr(sign + 1);
+  }
+  technique.parameters = [&] {
+    // Checked now, so that a slip is told before hours of measuring.
+    const auto complete = techniques::resolve(technique.id, technique.parameters).parameters;
+    ParameterValues given;
+    for (const auto& [name, value] : technique.parameters) given[name] = complete.at(name);
+    return given;
+  }();
+  return technique;
+}
+
+std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
+                          const std::function<void(const Progress&)>& progress) {
+  if (runs.empty()) return {};  // nothing is told of nothing
+  // Scenes keep the order in which they were first named.
+  std::map<std::string, std::size_t> place;
+  for (const Run& run : runs) place.try_emplace(run.scene, place.size());
+  const auto order = [&](const Run& run) {
+    return std::make_tuple(place.at(run.scene), run.width, run.height, run.light_samples, run.truth,
+                           !is_baseline(run));
+  };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](const Run& a, const Run& b) { return order(a) < order(b); });
+  std::vector<json> rows;
+  const auto start = Clock::now();
+  const std::size_t before = engine.measured();
+  const auto tell = [&](const std::string& what) {
+    if (!progress) return;
+    Progress now{rows.size(), runs.size(), engine.measured() - before, std::nullopt, what};
+    if (now.measured > 0)
+      now.left_s = std::chrono::duration<double>(Clock::now() - start).count() /
+                   static_cast<double>(now.measured) * static_cast<double>(now.total - now.done);
+    progress(now);
+  };
+  for (const Run& run : runs) {
+    tell(run.scene + " " + run.technique + " " + std::to_string(run.width) + "x" +
+         std::to_string(run.height));
+    rows.push_back(engine.measure(run));
+  }
+  tell("");
+  return rows;
+}
+
+}  // namespace penumbra::experiments

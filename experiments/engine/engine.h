@@ -1,0 +1,130 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/engine/results.h"
+#include "experiments/engine/timing.h"
+#include "renderer/render.h"
+#include "techniques/registry.h"
+
+namespace penumbra::experiments {
+
+/// What a picture is judged against.
+enum class Truth {
+  none,  ///< nothing: only costs are measured
+  area,  ///< what the lights do with their extents
+  hard   ///< exact hard shadows of the lights' centres
+};
+
+/// One thing to measure.
+struct Run {
+  std::string scene;           ///< as scenes::load takes it
+  std::string technique;       ///< id of a technique or preset
+  ParameterValues parameters;  ///< over the preset's
+  std::string name;            ///< in tables and figures; empty: the technique's id
+  std::uint32_t width = 600;   ///< pixels
+  std::uint32_t height = 600;
+  std::uint32_t light_samples = 1024;  ///< of the truth, and of techniques that take many
+  Truth truth = Truth::none;
+  bool picture = false;  ///< keep the picture as a file
+};
+
+struct EngineOptions {
+  std::filesystem::path folder;  ///< holds results.jsonl and pictures/; made if it is not there
+  std::filesystem::path data;    ///< of imported scenes; may be empty
+  std::string device;            ///< as RendererOptions
+  TimingBudget timing;
+  /// Called around what is timed; what it returns is held meanwhile. May be empty.
+  std::function<std::shared_ptr<void>()> alone;
+};
+
+/// Measures runs in process and keeps what it measured: a run that is known is not measured again,
+/// also after a kill. A scene is loaded and uploaded once while runs of it follow each other, and
+/// so are its truths and the time of `none` of a view, which is taken in the same sitting.
+class Engine {
+ public:
+  explicit Engine(EngineOptions options);
+
+  /// The run's result: what was asked for (scene, technique, ...), `status` done or failed,
+  /// `error`, frame_ms, p95_ms, spread, frames, settled, none_ms, over_none, create_ms,
+  /// memory_bytes, counters, `passes`, and against a truth rms_y, flip, visibility_rms,
+  /// false_shadow, missing_shadow. A technique that refuses the scene is a result too. Throws Error
+  /// for scenes and techniques that there are not, and where the device fails.
+  nlohmann::json measure(const Run& run);
+
+  /// Runs that were measured, not known.
+  std::size_t measured() const { return measured_; }
+  const DeviceInfo& device() const { return renderer_.device(); }
+  /// The scene of that name, kept while it is asked for again.
+  std::shared_ptr<const Scene> scene(const std::string& name);
+
+ private:
+  struct Judge {
+    Image8 picture;
+    ImageF visibility;
+  };
+  struct Baseline {
+    double ms = 0.0;
+    bool settled = true;
+    std::chrono::steady_clock::time_point when;
+  };
+
+  nlohmann::json key_of(const Run& run, const techniques::Resolved& technique);
+  nlohmann::json measure_now(const Run& run, const techniques::Resolved& technique);
+  RenderRequest request_of(const Run& run, const techniques::Resolved& technique);
+  const Judge& judge_of(const Run& run);
+  const Baseline& baseline_of(const Run& run);
+
+  EngineOptions options_;
+  Results results_;
+  Renderer renderer_;
+  FrameTimer timer_;
+  std::size_t measured_ = 0;
+  std::string scene_name_;
+  std::shared_ptr<const Scene> scene_;
+  std::string scene_hash_;
+  std::map<std::string, Judge> judges_;  ///< of the scene at hand, by view
+  std::map<std::string, Baseline> baselines_;
+};
+
+/// How far a list of runs is.
+struct Progress {
+  std::size_t done = 0;
+  std::size_t total = 0;
+  std::size_t measured = 0;      ///< of `done`: not known before
+  std::optional<double> left_s;  ///< once something was measured
+  std::string what;              ///< is measured next
+};
+
+/// Measures all runs, scene by scene, view by view, `none` first. Returns results in that order.
+/// `progress` is called before every run and at the end; throwing from it ends the list.
+std::vector<nlohmann::json> run_all(Engine& engine, std::vector<Run> runs,
+                                    const std::function<void(const Progress&)>& progress);
+
+/// The first technique of a family: `none`, `truth` (area lights), `traced` (hard shadows).
+const TechniqueDescription& technique_of_family(const std::string& family);
+
+/// Whether it is the technique of family `none`, which times are compared with.
+bool is_baseline(const Run& run);
+
+/// A technique with parameters as people write it, ID[:NAME=VALUE]..., for every run of it.
+/// Throws bad_value and not_found as techniques::resolve does.
+struct NamedTechnique {
+  std::string name;  ///< as written
+  std::string id;
+  ParameterValues parameters;
+};
+NamedTechnique read_technique(const std::string& text);
+
+/// Parts of a list that commas separate, without blanks around them and without empty ones.
+std::vector<std::string> parts_of(const std::string& list, char separator = ',');
+
+}  // namespace penumbra::experiments

@@ -1,0 +1,53 @@
+#include "experiments/engine/timing.h"
+
+#include <algorithm>
+
+namespace penumbra::experiments {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double frame_ms(const Cost& cost) {
+  return std::max(cost.median_ms, cost.wall_median_ms);
+}
+
+std::uint32_t frames_within(const TimingBudget& budget, double each_ms) {
+  const double count = each_ms > 0.0 ? budget.run_ms / each_ms : budget.most;
+  return std::clamp(static_cast<std::uint32_t>(std::min<double>(count, budget.most)), budget.fewest,
+                    budget.most);
+}
+
+}  // namespace
+
+RenderResult FrameTimer::time(RenderRequest request) {
+  RenderResult result =
+      renderer_.device().type == "cpu" ? time_on_processor(request) : time_on_gpu(request);
+  last_work_ = Clock::now();
+  return result;
+}
+
+RenderResult FrameTimer::time_on_processor(RenderRequest& request) {
+  request.settle = false;
+  request.frames = 1;
+  RenderResult once = renderer_.render(request);
+  const double first_ms = frame_ms(once.cost);
+  if (first_ms > budget_.longest_ms) return once;
+  // The first frame may have waited for compilers: it tells at most what the others take.
+  request.frames = frames_within(budget_, first_ms);
+  return renderer_.render(request);
+}
+
+RenderResult FrameTimer::time_on_gpu(RenderRequest& request) {
+  const bool rested =
+      !last_work_ || std::chrono::duration<double, std::milli>(Clock::now() - *last_work_).count() >
+                         budget_.rest_ms;
+  request.settle = rested;
+  request.frames = budget_.fewest + 2;
+  RenderResult result = renderer_.render(request);
+  if (rested || result.cost.spread <= budget_.wide_spread) return result;
+  request.settle = true;
+  request.frames = budget_.most;
+  return renderer_.render(request);
+}
+
+}  // namespace penumbra::experiments

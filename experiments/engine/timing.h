@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "renderer/render.h"
+
+namespace penumbra::experiments {
+
+/// How long a run may take, and how many frames it takes.
+struct TimingBudget {
+  double run_ms = 1500.0;    ///< frames that fit into this are timed
+  std::uint32_t fewest = 3;  ///< frames, whatever they take, so that a spread is known ...
+  std::uint32_t most = 9;
+  double longest_ms = 4000.0;  ///< ... unless one takes longer: it is timed the once it is drawn
+  double wide_spread = 0.05;   ///< times of a GPU that scatter more are taken again once settled
+  double rest_ms = 100.0;      ///< a GPU that had no work for so long has to settle first
+};
+
+/// Frames of one request, timed. A processor draws one frame to learn what it costs; a GPU, whose
+/// clocks fall while it rests, is kept busy from run to run instead and settles only after a rest.
+class FrameTimer {
+ public:
+  FrameTimer(Renderer& renderer, const TimingBudget& budget)
+      : renderer_(renderer), budget_(budget) {}
+
+  /// The request's `frames` and `settle` are chosen here. The picture is of the last frame.
+  RenderResult time(RenderRequest request);
+
+ private:
+  RenderResult time_on_processor(RenderRequest& request);
+  RenderResult time_on_gpu(RenderRequest& request);
+
+  Renderer& renderer_;
+  TimingBudget budget_;
+  std::optional<std::chrono::steady_clock::time_point> last_work_;
+};
+
+}  // namespace penumbra::experiments

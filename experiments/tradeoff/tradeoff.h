@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/engine/engine.h"
+
+namespace penumbra::experiments {
+
+struct TradeoffOptions {
+  EngineOptions engine;
+  std::string scene;
+  std::vector<std::string> techniques;  ///< ids; empty: the default
+  bool bias = false;
+  std::uint32_t size = 300;             ///< pixels along an edge
+  std::uint32_t light_samples = 256;    ///< of the reference
+  std::size_t runs_per_technique = 30;  ///< of the search
+  std::string command;                  ///< as the report quotes it
+  std::function<void(const Progress&)> progress;
+};
+
+/// What is traded: key of a row, and its name in words.
+struct Objective {
+  const char* key;
+  const char* words;
+};
+const std::vector<Objective>& objectives();
+
+/// Searches every technique's own parameters for the front of error against time (search.h), or,
+/// with `bias`, measures errors over bias, strategy and map size against exact hard shadows. Writes
+/// results.csv, figures/*.svg and report.html. Goes on where it was stopped. Returns {"device",
+/// "rows", "measured", "failed", "files", "fronts": {objective: [row]}}. Throws bad_value and
+/// not_found naming scene, techniques or size.
+nlohmann::json tradeoff(const TradeoffOptions& options);
+
+}  // namespace penumbra::experiments
