@@ -1,7 +1,8 @@
-// The researcher's pages: #studies, #study/ID and #bench.
+// The researcher's pages: #studies, #study/ID, #bench and #experiments.
 
 import { h, show } from "/assets/shared/dom.js";
 import { bench_view } from "./bench.js";
+import { experiments_view } from "./experiments.js";
 import { study_view } from "./study.js";
 import { studies_view } from "./studies.js";
 import { words_of } from "./words.js";
@@ -22,6 +23,7 @@ async function route() {
   }
   try {
     const view = place === "bench" ? await bench_view(signal)
+      : place === "experiments" ? await experiments_view(signal)
       : place === "study" ? await study_view(id, signal) : await studies_view();
     if (!signal.aborted) show(main, view);
   } catch (error) {
