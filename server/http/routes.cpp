@@ -94,6 +94,7 @@ const std::vector<Route>& routes() {
     add_render_routes(all);
     add_image_routes(all);
     add_sweep_routes(all);
+    add_experiment_routes(all);
     add_study_routes(all);
     add_export_routes(all);
     add_qr_code_routes(all);

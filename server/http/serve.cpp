@@ -100,9 +100,10 @@ bool Server::stop(double deadline_s) {
   if (!state->started) return true;
   state->started = false;
   state->service.draining = true;
-  // Publications and sweeps first: what a drain cancels is no failure of theirs.
+  // Publications, sweeps and experiments first: what a drain cancels is no failure of theirs.
   state->service.publisher.stop();
   state->service.sweeps.stop();
+  state->service.experiments.stop();
   auto renders = std::async(std::launch::async, [&] { state->service.renders->drain(deadline_s); });
   auto finished = std::async(std::launch::async, [&] { state->api.finish(); });
   const bool all =

@@ -9,6 +9,19 @@
 #include "study/study.h"
 
 namespace penumbra::server::http {
+namespace {
+
+ExperimentOptions experiment_options(const ServeOptions& options,
+                                     const std::filesystem::path& data) {
+  ExperimentOptions experiments;
+  experiments.folder = data / "experiments";
+  experiments.data = data;
+  experiments.device = options.device;
+  if (!options.worker_command.empty()) experiments.program = {options.worker_command.front()};
+  return experiments;
+}
+
+}  // namespace
 
 Service::Service(const ServeOptions& options_, const MakeRenderService& make_renders)
     : options(options_),
@@ -24,6 +37,7 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
       pictures(studies, *renders, folder.path() / storage::pictures_name),
       publisher(studies, *renders, pictures),
       sweeps(database, *renders),
+      experiments(experiment_options(options, folder.path())),
       health(folder, database, pictures) {
   storage::sweep_leftovers(folder.path());
 }

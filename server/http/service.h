@@ -11,6 +11,7 @@
 #include "server/http/publisher.h"
 #include "server/http/serve.h"
 #include "server/http/sweeps.h"
+#include "server/jobs/experiments.h"
 #include "server/jobs/render_service.h"
 #include "server/jobs/scene_reader.h"
 #include "server/storage/data_folder.h"
@@ -42,6 +43,7 @@ struct Service {
   std::atomic<bool> draining{false};
   Publisher publisher;
   Sweeps sweeps;
+  Experiments experiments;
   Health health;
 
   /// Empty when requests can be served, else why not.

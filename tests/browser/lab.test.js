@@ -96,3 +96,25 @@ test("what the server refuses is said in words at the field concerned", async ()
   await page.locator(".bench-form .problems:not(:empty)").waitFor();
   assert.match(await page.locator(".bench-form .problems").innerText(), /width/);
 });
+
+test("an experiment is started, followed and its report sorts by a click", async () => {
+  await page.goto(`${server.base}/lab#experiments`);
+  await page.getByLabel("Scenes", { exact: true }).fill("sweep:1x100x3");
+  await page.getByLabel("Techniques", { exact: true }).fill("--out=elsewhere");
+  await page.getByRole("button", { name: "Start" }).click();
+  await page.locator(".upload .problems", { hasText: "techniques" }).waitFor();
+  await page.getByLabel("Techniques", { exact: true }).fill("shadow-map");
+  await page.getByRole("button", { name: "Start" }).click();
+  const report = page.getByRole("link", { name: "Report" });
+  await report.waitFor({ timeout: 120_000 });
+  assert.deepEqual(await violations(page), []);
+  await page.goto(new URL(await report.getAttribute("href"), server.base).href);
+  const runs = page.locator("table").last();
+  const times = () => runs.locator("tbody tr").evaluateAll((rows) => rows.map((row) => Number(row.cells[4].dataset.number)));
+  await runs.getByRole("button", { name: "frame ms" }).click();
+  const sorted = await times();
+  assert.equal(sorted.length, 4);  // none and shadow-map at two sizes
+  assert.deepEqual(sorted, [...sorted].sort((a, b) => a - b));
+  await runs.getByRole("button", { name: "frame ms" }).click();
+  assert.deepEqual(await times(), [...sorted].reverse());
+});

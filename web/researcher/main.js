@@ -1,9 +1,10 @@
 // The researcher's pages: #studies, #study/ID/VERSION, #people/ID/VERSION, #edit/ID/VERSION, #copy/ID/VERSION
-// and #bench.
+// #bench and #experiments.
 
 import { h, show } from "/assets/shared/dom.js";
 import { bench_view } from "./bench.js";
 import { editor_view } from "./editor.js";
+import { experiments_view } from "./experiments.js";
 import { people_view } from "./people.js";
 import { study_view } from "./study.js";
 import { studies_view } from "./studies.js";
@@ -26,6 +27,7 @@ async function route() {
   try {
     const views = {
       bench: () => bench_view(signal),
+      experiments: () => experiments_view(signal),
       study: () => study_view(id, version, signal),
       people: () => people_view(id, version),
       edit: () => editor_view(id, version, false),

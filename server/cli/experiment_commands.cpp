@@ -1,0 +1,182 @@
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "experiments/engine/progress_file.h"
+#include "experiments/sweep/sweep.h"
+#include "experiments/tradeoff/tradeoff.h"
+#include "renderer/error.h"
+#include "server/cli/progress.h"
+#include "server/cli/session.h"
+#include "server/jobs/device_lock.h"
+
+namespace penumbra::server::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using experiments::parts_of;
+
+/// How long a run waits for others that draw on the device, seconds: there are thousands of runs.
+constexpr double patience_s = 2.0;
+
+struct Options {
+  std::string scenes;
+  std::string techniques;
+  std::string sizes;
+  fs::path out;
+  fs::path data;
+  std::string device;
+  double run_ms = experiments::TimingBudget{}.run_ms;
+  std::uint32_t light_samples = 256;
+  bool errors = false;
+  bool bias = false;
+
+  void add_to(CLI::App& command) {
+    command.add_option("--out", out, "Folder of results, figures and report; made if not there")
+        ->required();
+    command.add_option("--data", data, "Folder of imported scenes");
+    command.add_option("--device", device, "Vulkan device: part of its name, or its index");
+    command
+        .add_option("--run-ms", run_ms, "Frames are timed for about so long a run, milliseconds")
+        ->check(CLI::Range(1.0, 60000.0))
+        ->capture_default_str();
+    command.add_option("--light-samples", light_samples, "Light points of the reference")
+        ->check(CLI::Range(1u, RenderLimits::max_light_samples))
+        ->capture_default_str();
+  }
+
+  experiments::EngineOptions engine() const {
+    experiments::EngineOptions engine;
+    engine.folder = out;
+    engine.data = data;
+    engine.device = device;
+    engine.timing.run_ms = run_ms;
+    engine.alone = [] {
+      return std::make_shared<DeviceLock>(DeviceLock::Mode::measure, patience_s);
+    };
+    return engine;
+  }
+};
+
+std::vector<std::uint32_t> sizes_of(const std::string& list) {
+  std::vector<std::uint32_t> sizes;
+  for (const std::string& part : parts_of(list)) {
+    std::uint32_t size = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), size);
+    if (error != std::errc() || end != part.data() + part.size())
+      throw bad_value("sizes", "--sizes takes whole numbers of pixels, not '" + part + "'");
+    sizes.push_back(size);
+  }
+  return sizes;
+}
+
+/// A list that was given must name something: "," is a slip, not the default.
+std::vector<std::string> list_of(const std::string& flag, const std::string& text) {
+  auto parts = parts_of(text);
+  if (!text.empty() && parts.empty()) throw bad_value(flag, "--" + flag + " names nothing");
+  return parts;
+}
+
+std::function<void(const experiments::Progress&)> shown(Progress& bar,
+                                                        experiments::ProgressFile& file) {
+  return [&bar, &file](const experiments::Progress& now) {
+    file.show(now);
+    if (now.total == 0) return;
+    std::string text = std::to_string(now.done) + " of " + std::to_string(now.total);
+    if (now.left_s) text += ", " + std::to_string(std::lround(*now.left_s)) + " s left";
+    bar.show(static_cast<double>(now.done) / static_cast<double>(now.total), text + " " + now.what);
+  };
+}
+
+int finish(const Session& session, const Options& options, const nlohmann::json& summary) {
+  std::string text = summary.at("rows").dump() + " runs, " + summary.at("measured").dump() +
+                     " measured now, " + summary.at("failed").dump() + " failed\n";
+  for (const auto& file : summary.at("files"))
+    if (!file.get<std::string>().starts_with("figures/"))
+      text += "wrote " + (options.out / file.get<std::string>()).string() + "\n";
+  session.print(summary, text);
+  return 0;
+}
+
+int run_sweep(const Session& session, const Options& options) {
+  experiments::SweepOptions sweep;
+  sweep.engine = options.engine();
+  sweep.scenes = list_of("scenes", options.scenes);
+  sweep.techniques = list_of("techniques", options.techniques);
+  if (!options.sizes.empty() && (sweep.sizes = sizes_of(options.sizes)).empty())
+    throw bad_value("sizes", "--sizes names nothing");
+  sweep.errors = options.errors;
+  sweep.light_samples = options.light_samples;
+  sweep.command = "penumbra sweep";
+  if (!options.scenes.empty()) sweep.command += " --scenes '" + options.scenes + "'";
+  if (!options.techniques.empty()) sweep.command += " --techniques '" + options.techniques + "'";
+  if (!options.sizes.empty()) sweep.command += " --sizes " + options.sizes;
+  if (options.errors) sweep.command += " --errors";
+  Progress bar("sweep");
+  experiments::ProgressFile file(options.out);
+  sweep.progress = shown(bar, file);
+  return finish(session, options, experiments::sweep(sweep));
+}
+
+int run_tradeoff(const Session& session, const Options& options) {
+  experiments::TradeoffOptions tradeoff;
+  tradeoff.engine = options.engine();
+  tradeoff.scene = options.scenes;
+  tradeoff.techniques = list_of("techniques", options.techniques);
+  tradeoff.bias = options.bias;
+  tradeoff.light_samples = options.light_samples;
+  if (!options.sizes.empty()) {
+    const auto sizes = sizes_of(options.sizes);
+    if (sizes.size() != 1) throw bad_value("size", "--size takes one number of pixels");
+    tradeoff.size = sizes.front();
+  }
+  tradeoff.command = "penumbra tradeoff " + options.scenes;
+  if (!options.techniques.empty()) tradeoff.command += " --techniques '" + options.techniques + "'";
+  if (options.bias) tradeoff.command += " --bias";
+  Progress bar("tradeoff");
+  experiments::ProgressFile file(options.out);
+  tradeoff.progress = shown(bar, file);
+  return finish(session, options, experiments::tradeoff(tradeoff));
+}
+
+}  // namespace
+
+void add_experiment_commands(CLI::App& app, Session& session) {
+  auto sweep = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Time techniques over scenes and sizes; goes on where it was stopped");
+  command->add_option("--scenes", sweep->scenes,
+                      "Scenes or patterns (* and ?), separated by commas, such as "
+                      "'sweep:*x1600x3' [the scenes of 2007; fewer on a processor]");
+  command->add_option("--techniques", sweep->techniques,
+                      "ID[:NAME=VALUE]..., separated by commas [all that do not trace rays; those "
+                      "of table 4.1 on a processor]");
+  command->add_option("--sizes", sweep->sizes,
+                      "Edges of the pictures in pixels, separated by commas [25 to 1200; 100 and "
+                      "300 on a processor]");
+  command->add_flag("--errors", sweep->errors, "Also judge every picture against the reference");
+  sweep->add_to(*command);
+  add_json_flag(*command, session);
+  command->callback([sweep, &session] {
+    session.action = [sweep, &session] { return run_sweep(session, *sweep); };
+  });
+
+  auto tradeoff = std::make_shared<Options>();
+  command = app.add_subcommand(
+      "tradeoff", "Search what error each technique buys for how much time, over its parameters");
+  command->add_option("SCENE", tradeoff->scenes, "Built-in or imported id, sweep:OxTxL, or a file")
+      ->required();
+  command->add_option("--techniques", tradeoff->techniques,
+                      "Ids, separated by commas [all that have parameters and draw this scene]");
+  command->add_option("--size", tradeoff->sizes, "Edge of the picture in pixels [300]");
+  command->add_flag("--bias", tradeoff->bias,
+                    "Instead: error over bias, strategy and map size, against exact hard shadows");
+  tradeoff->add_to(*command);
+  add_json_flag(*command, session);
+  command->callback([tradeoff, &session] {
+    session.action = [tradeoff, &session] { return run_tradeoff(session, *tradeoff); };
+  });
+}
+
+}  // namespace penumbra::server::cli

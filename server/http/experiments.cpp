@@ -1,0 +1,111 @@
+#include "server/http/clock.h"
+#include "server/http/event_stream.h"
+#include "server/http/reply.h"
+#include "server/http/routes.h"
+#include "server/http/secrets.h"
+#include "server/http/service.h"
+
+namespace penumbra::server::http {
+namespace {
+
+using nlohmann::json;
+
+json body_of_experiment(const ExperimentState& state) {
+  const std::string self = "/api/v1/experiments/" + state.id;
+  return {{"id", state.id},
+          {"kind", state.kind},
+          {"created_at", state.created_at},
+          {"status", state.status},
+          {"request", state.request},
+          {"progress", state.progress},
+          {"error", state.error},
+          {"links",
+           {{"self", self},
+            {"results", self + "/results.csv"},
+            {"report", self + "/report.html"},
+            {"events", self + "/events"}}}};
+}
+
+ExperimentState experiment_at(Call& call) {
+  const auto state = call.service.experiments.find(call.path.at("id"));
+  if (!state) throw nothing_here();
+  return *state;
+}
+
+void post_experiment(Call& call) {
+  const auto state = call.service.experiments.start(call.json(), random_uuid(), utc_now());
+  call.response.set_header("Location", "/api/v1/experiments/" + state.id);
+  send_json(call.response, 202, body_of_experiment(state));
+}
+
+void get_experiments(Call& call) {
+  json list = json::array();
+  for (const auto& state : call.service.experiments.list())
+    list.push_back(body_of_experiment(state));
+  send_json(call.response, 200, {{"experiments", list}});
+}
+
+void get_experiment(Call& call) {
+  send_json(call.response, 200, body_of_experiment(experiment_at(call)));
+}
+
+void delete_experiment(Call& call) {
+  if (!call.service.experiments.cancel(call.path.at("id"))) throw nothing_here();
+  call.response.status = 204;
+}
+
+void send_file(Call& call, const std::string& name, const char* type) {
+  const auto bytes = call.service.experiments.file(call.path.at("id"), name);
+  if (!bytes) throw nothing_here();
+  call.response.status = 200;
+  call.response.set_content(*bytes, type);
+}
+
+void get_results(Call& call) {
+  send_file(call, "results.csv", "text/csv; charset=utf-8");
+}
+
+void get_report(Call& call) {
+  // Its script sorts tables. In a sandbox it runs as a stranger: no session, no interface.
+  call.response.set_header("Content-Security-Policy",
+                           "sandbox allow-scripts; default-src 'none'; style-src 'unsafe-inline'; "
+                           "script-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+                           "form-action 'none'; frame-ancestors 'none'");
+  send_file(call, "report.html", "text/html; charset=utf-8");
+}
+
+void get_figure(Call& call) {
+  send_file(call, "figures/" + call.path.at("figure"), "image/svg+xml");
+}
+
+void get_events(Call& call) {
+  auto seen = std::make_shared<ExperimentState>(experiment_at(call));
+  auto first = std::make_shared<bool>(true);
+  send_events(call, [seen, first, &service = call.service](EventSink& sink) {
+    if (!*first) {
+      const auto next = service.experiments.wait_change(seen->id, *seen, 1.0);
+      if (!next) return false;
+      if (next->status == seen->status && next->progress == seen->progress)
+        return sink.keep_alive() && !service.draining;
+      *seen = *next;
+    }
+    *first = false;
+    return sink.send("experiment", body_of_experiment(*seen)) && !seen->over();
+  });
+}
+
+}  // namespace
+
+void add_experiment_routes(std::vector<Route>& table) {
+  const std::string all = "/api/v1/experiments", one = all + "/{id}";
+  table.push_back({"POST", all, Access::researcher, post_experiment});
+  table.push_back({"GET", all, Access::researcher, get_experiments});
+  table.push_back({"GET", one, Access::researcher, get_experiment});
+  table.push_back({"DELETE", one, Access::researcher, delete_experiment});
+  table.push_back({"GET", one + "/results.csv", Access::researcher, get_results});
+  table.push_back({"GET", one + "/report.html", Access::researcher, get_report});
+  table.push_back({"GET", one + "/figures/{figure}", Access::researcher, get_figure});
+  table.push_back({"GET", one + "/events", Access::researcher, get_events});
+}
+
+}  // namespace penumbra::server::http
