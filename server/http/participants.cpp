@@ -6,6 +6,7 @@
 #include "server/http/reply.h"
 #include "server/http/secrets.h"
 #include "server/http/service.h"
+#include "server/http/webp.h"
 #include "study/answer.h"
 
 namespace penumbra::server::http {
@@ -213,10 +214,13 @@ void get_picture(Call& call) {
       digest = frozen->picture(planned, number);
   }
   if (digest.empty()) throw nothing_here();
-  const auto png = call.service.pictures.read(digest);
+  const bool webp = takes_webp(call.request.get_header_value("Accept"));
+  auto& pictures = call.service.pictures;
+  const auto bytes = webp ? pictures.read_webp(digest) : pictures.read(digest);
   call.response.status = 200;
+  call.response.set_header("Vary", "Accept");
   call.response.set_header("Cache-Control", "private, max-age=86400");
-  call.response.set_content(png, "image/png");
+  call.response.set_content(bytes, webp ? "image/webp" : "image/png");
 }
 
 /// Answers about the person: those the study asks for, checked; a comment and the brightness check.
