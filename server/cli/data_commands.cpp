@@ -80,7 +80,7 @@ void redraw(const fs::path& data, const std::vector<std::string>& digests) {
   RenderServiceOptions options;
   options.data = data;
   const auto renders = make_render_service(options);
-  http::FrozenPictures pictures(studies, *renders, data / storage::pictures_name);
+  http::FrozenPictures pictures(studies, *renders, data);
   for (const auto& digest : digests) {
     try {
       pictures.read(digest);

@@ -5,17 +5,24 @@
 
 #include "renderer/error.h"
 #include "server/http/png.h"
+#include "server/http/webp.h"
 #include "server/jobs/digest.h"
 #include "server/jobs/durable_file.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/folder_files.h"
 
 namespace penumbra::server::http {
 
 FrozenPictures::FrozenPictures(storage::Studies& studies_, RenderService& renders_,
-                               std::filesystem::path folder_)
-    : studies(studies_), renders(renders_), folder(std::move(folder_)) {
-  storage::make_private_folder(folder);
-  storage::sweep_unfinished(folder);
+                               const std::filesystem::path& data)
+    : studies(studies_),
+      renders(renders_),
+      folder(data / storage::pictures_name),
+      webp_folder(data / storage::webp_name) {
+  for (const auto& each : {folder, webp_folder}) {
+    storage::make_private_folder(each);
+    storage::sweep_unfinished(each);
+  }
 }
 
 std::filesystem::path FrozenPictures::file_of(const std::string& digest) const {
@@ -63,8 +70,9 @@ std::optional<std::string> FrozenPictures::redraw(const std::string& digest) {
     try {
       const auto png = renders.artefact(render, "image.png");
       if (!png) continue;
-      auto pixels = pixels_only(*png);
-      if (sha256(pixels) == digest) return pixels;
+      // Studies opened before pictures were packed tightly hold them as they were drawn.
+      for (auto& pixels : {packed_tightly(*png), pixels_only(*png)})
+        if (sha256(pixels) == digest) return pixels;
       spdlog::error("render {} draws other pixels than when its study was opened", render);
     } catch (const Error& error) {
       spdlog::error("the picture {} cannot be drawn again: {}", digest, error.what());
@@ -84,6 +92,24 @@ std::string FrozenPictures::read(const std::string& digest) {
     spdlog::error("the picture {} cannot be kept: {}", digest, error.what());
   }
   return *std::move(bytes);
+}
+
+std::string FrozenPictures::read_webp(const std::string& digest) {
+  const auto file = webp_folder / (digest + ".webp");
+  // The file begins with the SHA-256 of its picture's name and of what follows.
+  const auto seal_of = [&](std::string_view webp) { return sha256(digest + std::string(webp)); };
+  if (const auto sealed = read_whole(file); sealed && sealed->size() > digest.size()) {
+    auto webp = sealed->substr(digest.size());
+    if (sealed->starts_with(seal_of(webp))) return webp;
+    spdlog::error("the WebP of the picture {} is altered, and is made again", digest);
+  }
+  auto webp = lossless_webp(read(digest));
+  try {
+    storage::write_file_durably(file, seal_of(webp) + webp);
+  } catch (const Error& error) {
+    spdlog::error("the WebP of the picture {} cannot be kept: {}", digest, error.what());
+  }
+  return webp;
 }
 
 void FrozenPictures::check() {

@@ -19,15 +19,21 @@ namespace penumbra::server::http {
 /// is gone or altered is taken from its render again, where that has the same bytes. Thread-safe.
 class FrozenPictures {
  public:
-  /// Makes the folder (mode 0700) and removes files that a killed process left half written.
+  /// Makes their folders in the data folder (mode 0700) and removes files that a killed process
+  /// left half written.
   FrozenPictures(storage::Studies& studies_, RenderService& renders_,
-                 std::filesystem::path folder_);
+                 const std::filesystem::path& data);
 
   /// Keeps a picture and returns its digest.
   std::string freeze(const std::string& png);
 
   /// Verified bytes. Throws Error `storage`, which names no path, where there are none.
   std::string read(const std::string& digest);
+
+  /// The same pixels as lossless WebP, for browsers that take it. They are computed once and kept
+  /// under a seal of their own; where that does not fit, they are computed from the PNG again.
+  /// Throws as read.
+  std::string read_webp(const std::string& digest);
 
   /// The file's bytes if they have the digest; no look at renders.
   std::optional<std::string> read_file(const std::string& digest);
@@ -49,6 +55,7 @@ class FrozenPictures {
   storage::Studies& studies;
   RenderService& renders;
   std::filesystem::path folder;
+  std::filesystem::path webp_folder;  ///< derived from the pictures: no part of backups
   mutable std::mutex mutex;
   std::map<std::string, Signature> verified;
   std::set<std::string> wrong;

@@ -8,6 +8,7 @@
 #include "server/http/png.h"
 #include "server/http/reply.h"
 #include "server/http/service.h"
+#include "server/http/webp.h"
 #include "study/answer.h"
 
 namespace penumbra::server::http {
@@ -98,11 +99,15 @@ void get_picture(Call& call) {
   }
   if (digest.empty()) throw nothing_here();
   const bool draft = person.test && digest == lost_picture;
-  const auto png = draft ? drawn(call.service, render_request(*frozen, planned, number))
-                         : call.service.pictures.read(digest);
+  const bool webp = !draft && takes_webp(call.request.get_header_value("Accept"));
+  auto& pictures = call.service.pictures;
+  const auto bytes = draft  ? drawn(call.service, render_request(*frozen, planned, number))
+                     : webp ? pictures.read_webp(digest)
+                            : pictures.read(digest);
   call.response.status = 200;
+  call.response.set_header("Vary", "Accept");
   call.response.set_header("Cache-Control", "private, max-age=86400");
-  call.response.set_content(png, "image/png");
+  call.response.set_content(bytes, webp ? "image/webp" : "image/png");
 }
 
 void check_patches(const json& body) {

@@ -10,4 +10,9 @@ namespace penumbra::server::http {
 /// no PNG (W3C PNG, 5.3).
 std::string pixels_only(std::string_view png);
 
+/// As pixels_only, with the pixels' bytes packed as tightly as deflate can (level 9): renders are
+/// packed for speed, but a study's pictures are packed once and sent to many. Equal pixels with
+/// equal filters make equal bytes.
+std::string packed_tightly(std::string_view png);
+
 }  // namespace penumbra::server::http

@@ -134,7 +134,8 @@ void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::j
   }
   const auto png = renders.artefact(render.id, "image.png");
   if (!png) throw Error("storage", "the picture of " + render.id + " is gone");
-  const auto digest = pictures.freeze(pixels_only(*png));
+  const auto digest = pictures.freeze(packed_tightly(*png));
+  pictures.read_webp(digest);  // made now, so that no participant waits for it
   studies.count_picture(record.id, record.version, request_key(request), {render.id, digest});
 }
 

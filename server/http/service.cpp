@@ -34,7 +34,7 @@ Service::Service(const ServeOptions& options_, const MakeRenderService& make_ren
       renders(make_renders()),
       scene_reader({options.worker_command, 0, options.import_deadline_s}),
       frozen(studies),
-      pictures(studies, *renders, folder.path() / storage::pictures_name),
+      pictures(studies, *renders, folder.path()),
       publisher(studies, *renders, pictures),
       sweeps(database, *renders),
       experiments(experiment_options(options, folder.path())),

@@ -10,6 +10,7 @@ inline constexpr const char* key_name = "integrity.key";
 inline constexpr const char* journal_name = "answers.journal";
 inline constexpr const char* token_name = "researcher.token";
 inline constexpr const char* pictures_name = "pictures";
+inline constexpr const char* webp_name = "webp";  ///< derived from pictures: no part of backups
 
 /// Folders of what is being made: uploads and exports.
 inline constexpr const char* incoming_name = "incoming";

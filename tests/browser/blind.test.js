@@ -60,13 +60,37 @@ test("addresses and headers of pictures tell nothing about how they were made", 
   assert.equal(shapes.size, 1);
 });
 
-test("pictures carry their pixels and no text", async () => {
-  const addresses = [...new Set(pictures().map((reply) => reply.url()))];
-  for (const address of addresses) {
-    const names = chunks(Buffer.from(await (await fetch(address)).arrayBuffer()));
-    assert.ok(names.includes("IDAT"));
-    for (const name of ["tEXt", "zTXt", "iTXt", "tIME", "eXIf"]) assert.ok(!names.includes(name), name);
+const addresses = () => [...new Set(pictures().map((reply) => reply.url()))];
+const bytes_of = async (address, accept) => Buffer.from(await (await fetch(address, { headers: { Accept: accept } })).arrayBuffer());
+
+test("pictures carry their pixels and no text, as PNG and as WebP", async () => {
+  for (const address of addresses()) {
+    const png = await bytes_of(address, "image/png");
+    assert.deepEqual(new Set(chunks(png)), new Set(["IHDR", "IDAT", "IEND"]));
+    const webp = await bytes_of(address, "image/webp");
+    // One lossless chunk that fills the file (WebP Container Specification).
+    assert.equal(webp.toString("latin1", 0, 4) + webp.toString("latin1", 8, 16), "RIFFWEBPVP8L");
+    const length = webp.readUInt32LE(16);
+    assert.equal(webp.length, 20 + length + (length % 2));
+    assert.ok(webp.length < png.length, `${webp.length} < ${png.length}`);
   }
+});
+
+test("Chromium gets WebP and decodes it to the pixels of the PNG", async () => {
+  for (const reply of pictures()) assert.equal(reply.headers()["content-type"], "image/webp");
+  const different = await person.page.evaluate((all) => Promise.all(all.map(async (address) => {
+    const pixels = async (accept) => {
+      const blob = await (await fetch(address, { headers: { Accept: accept }, cache: "no-store" })).blob();
+      const picture = await createImageBitmap(blob);
+      const paper = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+      paper.drawImage(picture, 0, 0);
+      return { type: blob.type, width: picture.width, data: paper.getImageData(0, 0, picture.width, picture.height).data };
+    };
+    const [png, webp] = [await pixels("image/png"), await pixels("image/webp")];
+    if (png.type !== "image/png" || webp.type !== "image/webp" || png.width !== 128) return -1;
+    return png.data.reduce((count, value, index) => count + (value !== webp.data[index]), 0);
+  })), addresses());
+  assert.deepEqual(different, addresses().map(() => 0));
 });
 
 test("nothing that the server says to the page names a technique or scene", async () => {

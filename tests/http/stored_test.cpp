@@ -114,6 +114,36 @@ TEST_F(AnOpenStudy, HasPicturesThatNobodyElseReadsAndNoneHalfWritten) {
   EXPECT_EQ(static_cast<unsigned>(fs::status(pictures).permissions()) & 0777u, 0700u);
 }
 
+TEST_F(AnOpenStudy, ServesWebPToThoseThatTakeIt) {
+  const httplib::Headers takes{{"Accept", "image/avif,image/webp,*/*;q=0.8"}};
+  const auto webp = client->Get(url(), takes);
+  const auto png = client->Get(url(), httplib::Headers{{"Accept", "image/*"}});
+  EXPECT_EQ(webp->get_header_value("Content-Type"), "image/webp");
+  EXPECT_EQ(png->get_header_value("Content-Type"), "image/png");
+  for (const auto& reply : {&webp, &png}) EXPECT_EQ((*reply)->get_header_value("Vary"), "Accept");
+  EXPECT_EQ(webp->body.substr(0, 4) + webp->body.substr(8, 8), "RIFFWEBPVP8L");
+}
+
+TEST_F(AnOpenStudy, MakesWebPAgainThatIsAlteredOrGone) {
+  const httplib::Headers takes{{"Accept", "image/webp"}};
+  const auto bytes = client->Get(url(), takes)->body;
+  const auto name = file_with(client->Get(url())->body).stem().string() + ".webp";
+  const auto file = folder.path / "data" / "webp" / name;
+  const auto kept = read_whole(file);
+  ASSERT_TRUE(kept && kept->ends_with(bytes));
+  for (const std::size_t place : {std::size_t{0}, kept->size() - 1}) {
+    auto altered = *kept;
+    altered[place] = static_cast<char>(altered[place] ^ 1);
+    std::ofstream(file, std::ios::binary) << altered;
+    EXPECT_EQ(client->Get(url(), takes)->body, bytes) << place;
+    EXPECT_EQ(read_whole(file), kept) << place << " was not put back";
+  }
+  fs::remove(file);
+  EXPECT_EQ(client->Get(url(), takes)->body, bytes);
+  EXPECT_EQ(read_whole(file), kept);
+  EXPECT_EQ(static_cast<unsigned>(fs::status(file.parent_path()).permissions()) & 0777u, 0700u);
+}
+
 class AStudyWithoutRoom : public AnOpenStudy {
  protected:
   void SetUp() override { RunningServer::SetUp(); }
