@@ -9,7 +9,7 @@ namespace {
 
 constexpr double row_height = 14.0;
 constexpr double cell_text = 6.0;
-constexpr double gap = 1.0;
+constexpr double cell_gap = 1.0;
 
 /// From a dark red to white: light enough for black text above a third, white text below.
 std::string colour_of(double shade) {
@@ -71,8 +71,8 @@ std::string draw(const HeatMap& chart) {
       const HeatMap::Cell& cell = row.cells[c];
       const double x = left + width * static_cast<double>(c);
       if (cell.shade)
-        drawing.rectangle({x, top, x + width - gap, top + height - gap}, colour_of(*cell.shade));
-      drawing.text({x + 0.5 * (width - gap), top + 0.5 * height + 2.0}, cell.text,
+        drawing.rectangle({x, top, x + width - cell_gap, top + height - cell_gap}, colour_of(*cell.shade));
+      drawing.text({x + 0.5 * (width - cell_gap), top + 0.5 * height + 2.0}, cell.text,
                    {.size = cell_text,
                     .anchor = Anchor::middle,
                     .colour = text_colour(cell.shade.value_or(1.0))});

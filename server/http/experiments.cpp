@@ -61,11 +61,11 @@ void send_file(Call& call, const std::string& name, const char* type) {
   call.response.set_content(*bytes, type);
 }
 
-void get_results(Call& call) {
+void get_experiment_results(Call& call) {
   send_file(call, "results.csv", "text/csv; charset=utf-8");
 }
 
-void get_report(Call& call) {
+void get_experiment_report(Call& call) {
   // Its script sorts tables. In a sandbox it runs as a stranger: no session, no interface.
   call.response.set_header("Content-Security-Policy",
                            "sandbox allow-scripts; default-src 'none'; style-src 'unsafe-inline'; "
@@ -74,11 +74,11 @@ void get_report(Call& call) {
   send_file(call, "report.html", "text/html; charset=utf-8");
 }
 
-void get_figure(Call& call) {
+void get_experiment_figure(Call& call) {
   send_file(call, "figures/" + call.path.at("figure"), "image/svg+xml");
 }
 
-void get_events(Call& call) {
+void get_experiment_events(Call& call) {
   auto seen = std::make_shared<ExperimentState>(experiment_at(call));
   auto first = std::make_shared<bool>(true);
   send_events(call, [seen, first, &service = call.service](EventSink& sink) {
@@ -102,10 +102,10 @@ void add_experiment_routes(std::vector<Route>& table) {
   table.push_back({"GET", all, Access::researcher, get_experiments});
   table.push_back({"GET", one, Access::researcher, get_experiment});
   table.push_back({"DELETE", one, Access::researcher, delete_experiment});
-  table.push_back({"GET", one + "/results.csv", Access::researcher, get_results});
-  table.push_back({"GET", one + "/report.html", Access::researcher, get_report});
-  table.push_back({"GET", one + "/figures/{figure}", Access::researcher, get_figure});
-  table.push_back({"GET", one + "/events", Access::researcher, get_events});
+  table.push_back({"GET", one + "/results.csv", Access::researcher, get_experiment_results});
+  table.push_back({"GET", one + "/report.html", Access::researcher, get_experiment_report});
+  table.push_back({"GET", one + "/figures/{figure}", Access::researcher, get_experiment_figure});
+  table.push_back({"GET", one + "/events", Access::researcher, get_experiment_events});
 }
 
 }  // namespace penumbra::server::http
