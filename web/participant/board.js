@@ -2,6 +2,7 @@
 
 import { h, icon } from "/assets/shared/dom.js";
 import { make_draggable } from "./drag.js";
+import { Glance } from "./glance.js";
 
 const glide_ms = 180;
 
@@ -11,17 +12,58 @@ export class Board {
   constructor({ arrangement, pictures, labels, strings, on_change, on_enlarge, announce }) {
     Object.assign(this, { arrangement, pictures, labels, strings, on_change, on_enlarge, announce });
     this.picked = null;
+    this.glance = new Glance();
+    this.gaps = new Map([...pictures.values()].map(({ slot, letter }) => [slot, h("li", { class: "gap", "aria-hidden": "true" }, letter)]));
     this.items = new Map([...pictures.values()].map((picture) => [picture.slot, this.make_picture(picture)]));
     this.shelves = arrangement.slots.map((_, shelf) => this.make_shelf(shelf));
     this.tray_list = h("ul", { class: "pictures", "aria-labelledby": "tray-heading" });
     this.tray_note = h("p", { class: "tray-note" }, icon("check"), strings.tray_empty);
     this.tray = h("section", { class: "tray", "aria-labelledby": "tray-heading", data: { shelf: "tray" } },
-      h("h2", { id: "tray-heading" }, strings.tray), this.tray_list, this.tray_note);
+      h("div", { class: "tray-head" }, h("h2", { id: "tray-heading" }, strings.tray), this.tray_note), this.tray_list);
+    this.reachable = this.items.get(arrangement.unplaced[0] ?? arrangement.slots[0]).querySelector(".pick");
     this.rack = h("section", { class: "rack", "aria-labelledby": "rack-heading" },
       h("h2", { id: "rack-heading", class: "unseen" }, strings.shelves),
       h("ol", { class: "shelves", role: "list" }, this.shelves));
+    this.set_sizes();
+    this.rack.addEventListener("focusin", ({ target }) => target.matches(".place") && this.rove(this.places, target));
     this.tray.addEventListener("click", (event) => this.clicked_on(event, null));
     this.refresh();
+    this.rove(this.places, this.places[0]);
+  }
+
+  /// What the style sheet needs to know to fit everything in one window.
+  set_sizes() {
+    const count = this.pictures.size;
+    const columns = Math.ceil(Math.sqrt(count));
+    const upright = Math.max(1, columns - 1);  // in a window that is taller than wide
+    const ratio = Math.max(...[...this.pictures.values()].map(({ width, height }) => width / height));
+    for (const element of [this.tray, this.rack]) {
+      element.style.setProperty("--ratio", ratio.toFixed(4));
+      element.style.setProperty("--columns", columns);
+      element.style.setProperty("--rows", Math.ceil(count / columns));
+      element.style.setProperty("--columns-upright", upright);
+      element.style.setProperty("--rows-upright", Math.ceil(count / upright));
+    }
+  }
+
+  get places() {
+    return this.shelves.map((shelf) => shelf.querySelector(".place"));
+  }
+
+  /// All pictures in the order in which the page shows them.
+  get picks() {
+    return [this.tray, this.rack].flatMap((part) => [...part.querySelectorAll(".pick")]);
+  }
+
+  /// The tab key reaches one of `buttons`; arrows reach the others.
+  rove(buttons, reachable) {
+    for (const button of buttons) button.tabIndex = button === reachable ? 0 : -1;
+  }
+
+  reach(pick) {
+    this.reachable = pick;
+    this.rove(this.picks, pick);
+    for (const item of this.items.values()) item.querySelector(".enlarge").tabIndex = item.contains(pick) ? 0 : -1;
   }
 
   make_picture(picture) {
@@ -30,7 +72,7 @@ export class Board {
       h("img", { src: picture.url, alt: picture.name, width: picture.width, height: picture.height, draggable: "false" }),
       h("span", { class: "where unseen" }));
     const item = h("li", { class: "picture", data: { slot: picture.slot } }, button,
-      h("div", { class: "caption" }, h("span", { "aria-hidden": "true" }, picture.letter),
+      h("div", { class: "caption" }, h("span", { class: "letter", "aria-hidden": "true" }, picture.letter),
         h("button", { type: "button", class: "enlarge", "aria-label": strings.enlarge(picture.name),
           title: strings.enlarge(picture.name), on: { click: (event) => {
             event.stopPropagation();
@@ -40,9 +82,13 @@ export class Board {
       event.stopPropagation();
       this.pick(this.picked === picture.slot ? null : picture.slot);
     });
+    button.addEventListener("dblclick", () => this.on_enlarge(picture.slot));
     button.addEventListener("keydown", (event) => this.key(event, picture.slot));
+    button.addEventListener("focus", () => this.reach(button));
+    this.glance.attach(button, () => strings.at(picture.name, this.shelf_text(this.arrangement.shelf_of(picture.slot))));
     make_draggable(item, button, {
       target_at: (x, y) => document.elementFromPoint(x, y)?.closest("[data-shelf]"),
+      scrolled: () => this.rack,
       on_start: () => this.pick(null),
       on_drop: (target, rectangle) => this.move(picture.slot,
         target.dataset.shelf === "tray" ? null : Number(target.dataset.shelf), rectangle),
@@ -59,6 +105,12 @@ export class Board {
     const element = h("li", { class: "shelf", data: { shelf: String(shelf) } }, place, h("ul", { class: "pictures" }));
     element.classList.toggle("end", label !== "");
     element.addEventListener("click", (event) => this.clicked_on(event, shelf));
+    place.addEventListener("keydown", (event) => {
+      const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      this.places[Math.min(last, Math.max(0, shelf + step))].focus();
+    });
     return element;
   }
 
@@ -90,23 +142,34 @@ export class Board {
       ArrowDown: () => this.move(slot, now === null ? 0 : now + 1),
       Home: () => this.move(slot, 0),
       End: () => this.move(slot, lowest),
+      m: () => this.move(slot, Math.floor(lowest / 2)),
       Delete: () => this.move(slot, null),
       Backspace: () => this.move(slot, null),
       ArrowLeft: () => this.focus_neighbour(slot, -1),
       ArrowRight: () => this.focus_neighbour(slot, 1),
       Escape: () => this.pick(null),
       e: () => this.on_enlarge(slot),
-      E: () => this.on_enlarge(slot),
     };
-    if (!moves[event.key]) return;
+    const move = moves[event.key] ?? moves[event.key.toLowerCase()];
+    if (!move) return;
     event.preventDefault();
-    moves[event.key]();
+    move();
   }
 
   focus_neighbour(slot, step) {
-    const buttons = [...this.items.get(slot).parentElement.querySelectorAll(".pick")];
+    const buttons = this.picks;
     const here = buttons.indexOf(this.items.get(slot).querySelector(".pick"));
     buttons[Math.min(buttons.length - 1, Math.max(0, here + step))].focus();
+  }
+
+  /// The next picture to place after the one last reached. Says whether there is one.
+  focus_next() {
+    const { unplaced, slots } = this.arrangement;
+    if (unplaced.length === 0) return false;
+    const here = slots.findIndex((slot) => this.items.get(slot).contains(this.reachable));
+    const begun = document.activeElement === this.reachable;
+    this.focus(unplaced.find((slot) => slots.indexOf(slot) > here - (begun ? 0 : 1)) ?? unplaced[0]);
+    return true;
   }
 
   /// `from` is where a dragged picture was let go, if it was dragged.
@@ -138,6 +201,7 @@ export class Board {
   /// Lets pictures glide from where they were, or from `starts`, to where `change` puts them.
   glide(change, starts) {
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.glance.withdraw();
     const before = new Map([...this.items].map(([slot, item]) => [slot, starts.get(slot) ?? item.getBoundingClientRect()]));
     change();
     if (still) return;
@@ -145,7 +209,9 @@ export class Board {
       const after = item.getBoundingClientRect();
       const [x, y] = [before.get(slot).left - after.left, before.get(slot).top - after.top];
       if (Math.abs(x) + Math.abs(y) < 1) continue;
-      item.animate([{ transform: `translate(${x}px, ${y}px)` }, { transform: "none" }],
+      const scale = starts.has(slot) ? 1 : before.get(slot).height / after.height;
+      item.animate([{ transformOrigin: "0 0", transform: `translate(${x}px, ${y}px) scale(${scale})` },
+        { transformOrigin: "0 0", transform: "none" }],
         { duration: glide_ms, easing: "cubic-bezier(.2, .7, .2, 1)" });
     }
   }
@@ -153,17 +219,20 @@ export class Board {
   /// Brings the elements into the state of the arrangement.
   refresh() {
     const { arrangement, strings } = this;
-    this.fill(this.tray_list, arrangement.unplaced);
+    this.fill(this.tray_list, arrangement.slots.map((slot) =>
+      (arrangement.shelf_of(slot) === null ? this.items : this.gaps).get(slot)));
     this.tray.classList.toggle("empty", arrangement.unplaced.length === 0);
     for (const [shelf, element] of this.shelves.entries()) {
       const here = arrangement.on(shelf);
-      this.fill(element.querySelector(".pictures"), here);
+      this.fill(element.querySelector(".pictures"), here.map((slot) => this.items.get(slot)));
+      element.style.setProperty("--here", here.length);
       element.classList.toggle("filled", here.length > 0);
       const name = strings.shelf(shelf, arrangement.slots.length);
       element.querySelector(".place .unseen").textContent = this.picked === null
         ? strings.shelf_holds(name, here.map((slot) => this.pictures.get(slot).name))
         : `${this.pictures.get(this.picked).name}, ${name}`;
     }
+    this.reach(this.reachable);
     this.rack.classList.toggle("picking", this.picked !== null);
     this.tray.classList.toggle("picking", this.picked !== null);
     for (const [slot, item] of this.items) {
@@ -173,8 +242,7 @@ export class Board {
     }
   }
 
-  fill(list, slots) {
-    const wanted = slots.map((slot) => this.items.get(slot));
+  fill(list, wanted) {
     // Moving an element drops its focus and restarts its picture: move only what is not there yet.
     if (wanted.every((item, index) => list.children[index] === item) && list.children.length === wanted.length) return;
     list.replaceChildren(...wanted);

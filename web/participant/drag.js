@@ -41,9 +41,14 @@ class Drag {
 
   scroll() {
     const [x, y] = this.at;
-    const step = y < edge_px ? -scroll_px : y > innerHeight - edge_px ? scroll_px : 0;
+    const part = this.handlers.scrolled();
+    const scrolls = part.scrollHeight > part.clientHeight && getComputedStyle(part).overflowY === "auto";
+    const { top, bottom } = scrolls ? part.getBoundingClientRect() : { top: 0, bottom: innerHeight };
+    // Beyond the part the hand is on its way: back to the tray, or over the edge of the window.
+    const inside = !scrolls || (y > top && y < bottom);
+    const step = !inside ? 0 : y < top + edge_px ? -scroll_px : y > bottom - edge_px ? scroll_px : 0;
     if (step !== 0) {
-      scrollBy({ top: step, behavior: "instant" });
+      (scrolls ? part : window).scrollBy({ top: step, behavior: "instant" });
       this.move(x, y);
     }
     this.scrolling = requestAnimationFrame(() => this.scroll());
@@ -61,7 +66,8 @@ class Drag {
   }
 }
 
-/// Lets `item` be dragged by `handle`. Handlers: target_at(x, y) -> element or null, on_start(),
+/// Lets `item` be dragged by `handle`. Handlers: target_at(x, y) -> element or null, scrolled() -> the
+/// element that scrolls when the hand comes near its edge (the window where it does not), on_start(),
 /// on_drop(target, rectangle of the picture at that moment).
 export function make_draggable(item, handle, handlers) {
   let pressed = null;  // {pointer, x, y, hold}

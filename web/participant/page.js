@@ -37,6 +37,8 @@ export class RankingPage {
       this.changed();
     } } });
     if (this.arrangement) this.same.checked = this.arrangement.all_same;
+    const same = this.arrangement
+      ? h("label", { class: "choice same", for: "all-same" }, this.same, h("span", {}, strings.all_same)) : null;
     this.difficulty = h("fieldset", { class: "difficulty" },
       h("legend", {}, texts.difficulty.question),
       h("div", { class: "steps" }, texts.difficulty.labels.map((label, index) => h("label", { class: "step" },
@@ -44,24 +46,44 @@ export class RankingPage {
           checked: difficulty === index + 1, on: { change: () => this.changed() } }),
         h("span", {}, label)))));
     const finish = h("section", { class: "finish" },
-      this.arrangement ? h("label", { class: "choice same", for: "all-same" }, this.same, h("span", {}, strings.all_same)) : null,
       this.difficulty, this.problems,
-      h("div", { class: "actions" },
-        h("button", { type: "button", class: "primary next", on: { click: () => this.leave() } }, strings.next),
-        this.back ? h("button", { type: "button", class: "quiet", on: { click: this.back } }, strings.back) : null));
-    this.work = h("div", { class: `work ${this.digits ? "typed" : "shelved"}`, data: { count: String(this.pictures.size) } },
-      this.digits ? this.digits.element : [h("div", { class: "tray-place" }, this.board.tray), this.board.rack], finish);
-    this.work.classList.toggle("few", this.pictures.size <= 4);
-    return h("div", { class: "stage" },
-      h("div", { class: "question" },
-        this.practice ? h("p", { class: "practice" }, h("strong", {}, strings.practice), ` ${strings.practice_text}`) : null,
-        h("h1", { tabindex: "-1" }, this.page.question),
-        this.digits ? null : h("details", { class: "ways" }, h("summary", {}, strings.how_heading), h("p", {}, strings.how_ways))),
-      this.page.reference ? h("figure", { class: "true-picture" },
-        h("button", { type: "button", class: "pick", on: { click: () => this.enlarge(reference_slot) } },
-          h("img", { src: this.page.reference.url, alt: strings.enlarge(strings.reference) })),
-        h("figcaption", {}, strings.reference)) : null,
-      this.work);
+      h("div", { class: "actions" }, same,
+        this.back ? h("button", { type: "button", class: "quiet", on: { click: this.back } }, strings.back) : null,
+        h("button", { type: "button", class: "primary next", on: { click: () => this.leave() } }, strings.next)));
+    const question = h("div", { class: "question" },
+      this.practice ? h("p", { class: "practice" }, h("strong", {}, strings.practice), ` ${strings.practice_text}`) : null,
+      h("h1", { tabindex: "-1" }, this.page.question),
+      this.digits ? null : h("details", { class: "ways" }, h("summary", {}, strings.how_heading), h("p", {}, strings.how_ways)));
+    const reference = this.make_reference();
+    this.work = h("div", { class: `work ${this.digits ? "typed" : "shelved"}` },
+      this.digits ? [reference, this.digits.element]
+        : [h("div", { class: "tray-place" }, reference, this.board.tray),
+          h("p", { class: "keys", "aria-hidden": "true" }, strings.board_keys), this.board.rack, this.board.glance.element], finish);
+    const stage = h("div", { class: "stage" }, question, this.work);
+    stage.classList.toggle("shelving", !this.digits);
+    if (this.board) stage.addEventListener("keydown", (event) => this.key(event));
+    return stage;
+  }
+
+  /// The true picture, where the study shows it beside the others.
+  make_reference() {
+    const { page, strings } = this;
+    if (!page.reference) return null;
+    this.reference_image = h("img", { src: page.reference.url, alt: strings.enlarge(strings.reference) });
+    const button = h("button", { type: "button", class: "pick", on: { click: () => this.enlarge(reference_slot) } }, this.reference_image);
+    this.board?.glance.attach(button, () => strings.reference);
+    return h("figure", { class: "true-picture" }, button, h("figcaption", {}, strings.reference));
+  }
+
+  /// One key leads through the page: every picture to place, then the last question.
+  key(event) {
+    if (event.altKey || event.ctrlKey || event.metaKey || event.key.toLowerCase() !== "n") return;
+    event.preventDefault();
+    if (!this.board.focus_next()) this.focus_difficulty();
+  }
+
+  focus_difficulty() {
+    (this.difficulty.querySelector("input:checked") ?? this.difficulty.querySelector("input")).focus();
   }
 
   get chosen_difficulty() {
@@ -73,9 +95,13 @@ export class RankingPage {
     const pictures = new Map(this.pictures);
     if (this.page.reference) {
       pictures.set(reference_slot, { ...this.page.reference, slot: reference_slot,
+        width: this.reference_image.naturalWidth, height: this.reference_image.naturalHeight,
         letter: this.strings.reference_short, name: this.strings.reference });
     }
+    this.board?.glance.withdraw();
     this.viewer = new Viewer({ pictures, strings: this.strings,
+      shelf_of: (which) => this.arrangement?.shelf_of(which) ?? null, lowest: this.pictures.size - 1,
+      place_text: (which) => (this.board && which !== reference_slot ? this.board.shelf_text(this.arrangement.shelf_of(which)) : ""),
       on_flip: () => this.note("flips"), on_show: () => this.note("enlargements") });
     this.viewer.open(slot);
   }
@@ -95,10 +121,9 @@ export class RankingPage {
   /// The look that goes with the state: shelves rest while "all the same" is chosen.
   follow() {
     if (!this.arrangement) return;
-    const { all_same, unplaced } = this.arrangement;
+    const { all_same } = this.arrangement;
     this.work.classList.toggle("same", all_same);
     this.board.rack.inert = all_same;
-    this.work.classList.toggle("placed", unplaced.length === 0);
   }
 
   draft() {
@@ -123,7 +148,7 @@ export class RankingPage {
       found.push({ text: this.strings.unplaced_missing(names(slots), this.pictures.size), focus: () => this.board.focus(slots[0]) });
     }
     if (!this.practice && this.chosen_difficulty === null) {
-      found.push({ text: this.strings.difficulty_missing, focus: () => this.difficulty.querySelector("input").focus() });
+      found.push({ text: this.strings.difficulty_missing, focus: () => this.focus_difficulty() });
     }
     return found;
   }

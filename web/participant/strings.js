@@ -45,8 +45,11 @@ const en = {
       "Pictures that look equally realistic go on the same shelf. Shelves may stay empty."],
     ["Look closer", "Enlarge a picture, or flip between two of them in the same place."],
   ],
-  how_ways: "Drag a picture to its shelf, or choose it and then choose the shelf. On a keyboard, the up and " +
-    "down arrows move the picture in focus, Home and End move it to the ends, Delete takes it back and E enlarges it.",
+  how_ways: "Drag a picture to its shelf, or choose it and then choose the shelf. On a keyboard, N " +
+    "goes to the next picture to place and, when none is left, to the question below; the up and down arrows move the picture in focus, " +
+    "Home, M and End move it to the top, the middle and the bottom, the left and right arrows go to its neighbours, " +
+    "Delete takes it back and E enlarges it, as a double click does.",
+  board_keys: "N next · ↑ ↓ move · Home M End top, middle, bottom · E enlarge · Delete take back",
   screen_heading: "Check your screen",
   screen_text: "Shadows are dark. If you cannot tell the patches apart, turn your screen brighter or move away from bright light.",
   screen_patches: "A row of dark grey patches, each a little lighter than the one before",
@@ -116,7 +119,10 @@ const en = {
   confirm_no: "No, go back",
   swapped: "The order is turned round. Please look again.",
   viewer: "Pictures in actual size",
-  viewer_hint: "Choose two pictures below and flip between them.",
+  viewer_hint: "Choose two pictures below and flip between them, or set them side by side.",
+  viewer_keys: "Keys: Page Up, Page Down other picture · Space flip · S side by side · + − zoom · arrows look around · Esc close",
+  beside: "Side by side",
+  at: (picture, place) => (place ? `${picture}: ${place}` : picture),
   flip: "Flip",
   flip_with: (picture) => `Flip to ${picture}`,
   closer: "Zoom in",
@@ -175,7 +181,10 @@ const nl = {
     ["Beter kijken", "Vergroot een plaatje, of wissel er twee af op dezelfde plek."],
   ],
   how_ways: "Sleep een plaatje naar zijn plank, of kies eerst het plaatje en dan de plank. Met het toetsenbord " +
-    "verplaatsen de pijlen omhoog en omlaag het plaatje, Home en End zetten het aan de uiteinden, Delete haalt het terug en E vergroot het.",
+    "gaat N naar het volgende te plaatsen plaatje en, als er geen meer is, naar de vraag eronder; de pijlen omhoog en omlaag verplaatsen het plaatje, " +
+    "Home, M en End zetten het bovenaan, in het midden en onderaan, de pijlen links en rechts gaan naar de buren, " +
+    "Delete haalt het terug en E vergroot het, net als dubbelklikken.",
+  board_keys: "N volgende · ↑ ↓ schuiven · Home M End boven, midden, onder · E vergroot · Delete terug",
   screen_heading: "Controleer uw scherm",
   screen_text: "Schaduwen zijn donker. Kunt u de vlakjes niet uit elkaar houden, zet uw scherm dan helderder of ga uit het felle licht.",
   screen_patches: "Een rij donkergrijze vlakjes, elk iets lichter dan het vorige",
@@ -245,7 +254,10 @@ const nl = {
   confirm_no: "Nee, terug",
   swapped: "De volgorde is omgedraaid. Kijk nog eens.",
   viewer: "Plaatjes op ware grootte",
-  viewer_hint: "Kies hieronder twee plaatjes en wissel ze af.",
+  viewer_hint: "Kies hieronder twee plaatjes en wissel ze af, of zet ze naast elkaar.",
+  viewer_keys: "Toetsen: Page Up, Page Down ander plaatje · spatie wisselen · S naast elkaar · + − zoomen · pijlen rondkijken · Esc sluiten",
+  beside: "Naast elkaar",
+  at: (picture, place) => (place ? `${picture}: ${place}` : picture),
   flip: "Wisselen",
   flip_with: (picture) => `Wissel naar ${picture}`,
   closer: "Inzoomen",

@@ -39,6 +39,7 @@ const icon_paths = {
   enlarge: "M9 3H3v6 M15 3h6v6 M21 15v6h-6 M3 15v6h6 M3 3l7 7 M21 3l-7 7 M21 21l-7-7 M3 21l7-7",
   close: "M5 5l14 14 M19 5L5 19",
   flip: "M4 8h13 M13 4l4 4-4 4 M20 16H7 M11 12l-4 4 4 4",
+  beside: "M3 4h8v16H3z M13 4h8v16h-8z",
   closer: "M10.5 3a7.5 7.5 0 1 0 .01 0z M16 16l5 5 M10.5 7.5v6 M7.5 10.5h6",
   further: "M10.5 3a7.5 7.5 0 1 0 .01 0z M16 16l5 5 M7.5 10.5h6",
   swap: "M7 4v16 M3 8l4-4 4 4 M17 20V4 M13 16l4 4 4-4",
