@@ -49,7 +49,7 @@ const en = {
     "goes to the next picture to place and, when none is left, to the question below; the up and down arrows move the picture in focus, " +
     "Home, M and End move it to the top, the middle and the bottom, the left and right arrows go to its neighbours, " +
     "Delete takes it back and E enlarges it, as a double click does.",
-  board_keys: "N next · ↑ ↓ move · Home M End top, middle, bottom · E enlarge · Delete take back",
+  board_keys: "N next · ↑ ↓ move · Home M End top, middle, bottom · E enlarge · Delete back",
   screen_heading: "Check your screen",
   screen_text: "Shadows are dark. If you cannot tell the patches apart, turn your screen brighter or move away from bright light.",
   screen_patches: "A row of dark grey patches, each a little lighter than the one before",
