@@ -46,7 +46,7 @@ void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fres
   completed.bind(2, fresh.version);
   completed.executeStep();
   if (completed.getColumn(0).getInt64() >= quota)
-    throw Error("conflict", "the study has as many participants as it needs", "study");
+    throw Error("conflict", "the study has as many participants as it needs", "quota");
 }
 
 /// Place of the new person, taken away from whoever left it.

@@ -2,7 +2,7 @@
 
 import { h, icon } from "/assets/shared/dom.js";
 import { get, post, sleep } from "/assets/shared/http.js";
-import { results_section } from "./results.js";
+import { Results } from "./results.js";
 import { status_badge } from "./studies.js";
 import { words_of } from "./words.js";
 
@@ -63,15 +63,20 @@ function progress_of(study) {
   ];
 }
 
+/// True once people were let in: before that there is nothing to count or to export.
+const has_opened = ({ status }) => status === "open" || status === "closed";
+
 class StudyView {
   constructor(study, signal) {
     Object.assign(this, { study, signal });
     this.live = h("section", { class: "card" });
     this.problem = h("p", { class: "problems", role: "alert" });
-    this.results = h("section", {});
+    this.results = new Results();
+    this.results_problem = h("p", { class: "problems", role: "alert" });
     this.figures = figures_list(this.path("/figures"));
     this.element = h("div", {}, h("p", {}, h("a", { href: "#studies" }, "All studies")),
-      h("h1", { tabindex: "-1" }, study.title), this.live, this.problem, this.results);
+      h("h1", { tabindex: "-1" }, study.title), this.live, this.problem,
+      this.results_problem, this.results.element);
     this.draw();
     this.follow();
   }
@@ -105,29 +110,30 @@ class StudyView {
         study.hash ? h("span", { class: "small" }, ` frozen as ${study.hash.slice(0, 12)}`) : null),
       progress_of(study),
       study.status === "open" ? participant_link(study) : null,
-      study.hash ? [counts(study), pages_table(study)] : null,
+      has_opened(study) ? [counts(study), pages_table(study)] : null,
       h("div", { class: "actions" },
         study.status === "draft" ? this.action("Render the pictures and publish", "/publish", true) : null,
         study.status === "open" ? this.action("Close the study", "/close", false) : null,
-        study.hash ? [h("a", { class: "quiet", href: this.path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
+        has_opened(study) ? [h("a", { class: "quiet", href: this.path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
           exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
           exported("results.json", "Results (JSON)")] : null),
-      study.hash ? this.figures : null,
+      has_opened(study) ? this.figures : null,
     ].flat(Infinity).filter(Boolean));
     this.draw_results();
   }
 
-  /// Fetched again only when somebody has answered since.
+  /// Fetched again only when somebody has answered since. While pictures are rendered there are none.
   async draw_results() {
     const { study } = this;
     const stamp = JSON.stringify([study.hash, study.scenes, study.participants]);
-    if (!study.hash || stamp === this.drawn) return;
+    if (!has_opened(study) || stamp === this.drawn) return;
     this.drawn = stamp;
     try {
-      this.results.replaceChildren(results_section(await get(this.path("/results.json")), study));
+      this.results.update(await get(this.path("/results.json")), study);
+      this.results_problem.textContent = "";
     } catch (error) {
       this.drawn = null;
-      this.results.replaceChildren(h("p", { class: "problems", role: "alert" }, `The results cannot be shown: ${words_of(error)}`));
+      this.results_problem.textContent = `The results cannot be shown: ${words_of(error)}`;
     }
   }
 
