@@ -174,7 +174,8 @@ void complete(Call& call) {
 }
 
 void withdraw(Call& call) {
-  if (!call.service.participants.withdraw(call.path.at("code"), utc_now())) {
+  const auto code = code_as_written(call.path.at("code"));
+  if (!call.service.participants.withdraw(code, utc_now())) {
     count_failure(call.service, call.request);
     throw nothing_here();
   }

@@ -61,16 +61,32 @@ std::string random_uuid() {
          digits.substr(16, 4) + "-" + digits.substr(20);
 }
 
+namespace {
+
+constexpr std::string_view code_alphabet = "23456789ABCDEFGHJKMNPQRSTUVWXYZ";
+constexpr std::size_t code_group = 5;
+
+}  // namespace
+
 std::string random_code(std::size_t groups) {
-  constexpr std::string_view alphabet = "23456789ABCDEFGHJKMNPQRSTUVWXYZ";
-  constexpr std::size_t group_length = 5;
   // Bytes at or above the largest multiple of the alphabet's size would favour its first letters.
-  constexpr unsigned fair = 256 - 256 % alphabet.size();
+  constexpr unsigned fair = 256 - 256 % code_alphabet.size();
   std::string code;
-  while (code.size() < groups * (group_length + 1) - 1) {
-    if (code.size() % (group_length + 1) == group_length) code += '-';
+  while (code.size() < groups * code_group) {
     const unsigned value = random_numbers(1).front();
-    if (value < fair) code += alphabet[value % alphabet.size()];
+    if (value < fair) code += code_alphabet[value % code_alphabet.size()];
+  }
+  return code_as_written(code);
+}
+
+std::string code_as_written(std::string_view typed) {
+  std::string code;
+  for (const char letter : typed) {
+    const char upper =
+        letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+    if (code_alphabet.find(upper) == std::string_view::npos) continue;
+    if (code.size() % (code_group + 1) == code_group) code += '-';
+    code += upper;
   }
   return code;
 }

@@ -22,6 +22,10 @@ std::string random_uuid();
 /// so six groups are over 128 bits.
 std::string random_code(std::size_t groups);
 
+/// A code of `random_code` as it was given out, from one typed in any case, with any or no dashes
+/// and spaces. Characters that no code holds are dropped.
+std::string code_as_written(std::string_view typed);
+
 /// Compares in a time that depends on the lengths only.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 

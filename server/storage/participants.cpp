@@ -53,7 +53,7 @@ void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fres
   if (!there || status.getColumn(0).getString() != "open")
     throw Error("conflict", "the study is not open", "study");
   if (quota_reached(connection, fresh.study, fresh.version, quota))
-    throw Error("conflict", "the study has as many participants as it needs", "study");
+    throw Error("conflict", "the study has as many participants as it needs", "quota");
   if (!once || fresh.person_id.empty()) return;
   SQLite::Statement same(connection,
                          "SELECT 1 FROM participants WHERE study = ? AND person_id = ? AND "

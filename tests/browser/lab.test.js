@@ -36,9 +36,17 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
   assert.deepEqual(await violations(page), []);
   await page.locator(".studies .card", { hasText: study }).getByRole("link").click();
   await page.getByRole("button", { name: "Render the pictures and publish" }).click();
+  // Whatever the page says in red while pictures are drawn is kept, however short it stands there.
+  await page.evaluate(() => {
+    window.alarms = [];
+    new MutationObserver(() => document.querySelectorAll("main .problems:not(:empty)").forEach((problem) =>
+      window.alarms.push(problem.textContent))).observe(document.querySelector("main"), { childList: true, subtree: true });
+  });
+  await page.getByText(/^Rendering the pictures: /).waitFor();
   const link = page.getByRole("link", { name: new RegExp(`/s/${study}$`) });
   await link.waitFor({ timeout: 120_000 });
   assert.equal(await link.getAttribute("href"), `${server.base}/s/${study}`);
+  assert.deepEqual(await page.evaluate(() => window.alarms), []);
   for (let each = 0; each < 2; ++each) {
     const person = await Person.arrive(browser, server, study);
     await person.enter();
@@ -59,6 +67,23 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
     assert.ok(shown[index].includes(technique.weighted_mean_rank.toFixed(2)), `${shown[index]} has no ${technique.weighted_mean_rank}`);
   }
   assert.deepEqual(await violations(page), []);
+});
+
+test("the set of participants that was chosen stays chosen when answers come in", async () => {
+  const choice = page.getByLabel("Participants", { exact: true });
+  await choice.selectOption("inverted_turned");
+  await choice.focus();
+  const person = await Person.arrive(browser, server, study);
+  await person.enter();
+  await person.answer({ A: 0, B: 1, C: 2 });
+  await person.see_page(1);
+  await person.answer({ A: 0, B: 1, C: 2 });
+  await person.completion_code();
+  await person.context.close();
+  await page.locator(".figures dd").first().filter({ hasText: /^3$/ }).waitFor();
+  await page.locator(".result", { hasText: "All scenes" }).getByText("3 participants").waitFor();
+  assert.equal(await choice.inputValue(), "inverted_turned");
+  assert.ok(await choice.evaluate((element) => element === document.activeElement));
 });
 
 test("a closed study lets nobody in", async () => {

@@ -277,6 +277,16 @@ TEST(Secrets, HoldAtLeast128BitsAndDiffer) {
             std::string::npos);
 }
 
+TEST(Secrets, CodesAreReadHoweverTheyAreTyped) {
+  for (const std::string typed :
+       {"AB2CD-EF3GH-J", "ab2cdef3ghj", " Ab2 cd ef3 gh j ", "--aB2Cd--EF3GHJ-"})
+    EXPECT_EQ(code_as_written(typed), "AB2CD-EF3GH-J") << typed;
+  EXPECT_EQ(code_as_written(""), "");
+  EXPECT_EQ(code_as_written(" -\xe2\x80\x93 "), "");  // an en dash as text programs put it
+  const auto code = random_code(6);
+  EXPECT_EQ(code_as_written(code), code);
+}
+
 TEST(Secrets, KeyedDigestIsHmacSha256) {
   // RFC 4231, test case 2.
   EXPECT_EQ(keyed_digest("Jefe", "what do ya want for nothing?"),

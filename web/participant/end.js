@@ -48,7 +48,7 @@ function completion_box({ completion_code, completion_url }, strings) {
 
 /// For those who come when the study has as many people as it needs.
 export function full_view(welcome, strings) {
-  return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.full), completion_box(welcome, strings));
+  return h("article", { class: "card end" }, h("h1", { tabindex: "-1" }, strings.errors["conflict quota"]), completion_box(welcome, strings));
 }
 
 /// For those whose study was closed before they finished: what is kept, and how to have it deleted.

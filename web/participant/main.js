@@ -9,9 +9,9 @@ import { Person } from "./person.js";
 import { practice_view } from "./practice.js";
 import { load_ahead, load_pictures } from "./pictures.js";
 import { open_storage } from "./storage.js";
-import { strings_of } from "./strings.js";
+import { reason_of, strings_of } from "./strings.js";
 import { texts_of } from "./texts.js";
-import { consent_view, instruction_view, message_view } from "./welcome.js";
+import { consent_view, instruction_view, loading_view, message_view } from "./welcome.js";
 
 const phone_px = 600;  // shorter side of a screen, CSS pixels, below which a touch screen is a phone's
 const toast_ms = 3500;
@@ -59,15 +59,17 @@ class Course {
       await step();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      const text = error.passing ? this.strings.unreachable : error.status === 404 ? this.strings.no_study : error.message;
+      const text = error.status === 404 ? this.strings.no_study : reason_of(error, this.strings);
       this.show(message_view(text, { name: this.strings.try_again, act: () => this.attempt(step) }));
     }
   }
 
-  show(view, page = null) {
+  /// `judging` keeps the grey around the pictures while they are fetched: a bright field between two
+  /// pages would make the shadows after it look darker.
+  show(view, { page = null, judging = page !== null } = {}) {
     this.current?.hide();
     this.current = page;
-    document.body.classList.toggle("judging", page !== null);
+    document.body.classList.toggle("judging", judging);
     show(main, view);
     this.draw_bar();
     this.check_window();
@@ -84,7 +86,7 @@ class Course {
 
   show_consent() {
     if (this.welcome.status !== "open" && !preview) {
-      this.show(message_view(this.strings.not_open));
+      this.show(message_view(this.strings.errors["conflict study"]));
       return;
     }
     if (this.welcome.full && !preview) {
@@ -119,6 +121,7 @@ class Course {
     }
     if (this.show_if_ended()) return;
     const open = await person.first_open();
+    this.answered = open > 0;
     const begun = await this.storage.get(person.key("begun"));
     if (!begun && open === 0) this.show_instructions();
     else if (wanted !== null && wanted <= open && wanted < person.pages.length) await this.show_page(wanted);
@@ -145,7 +148,7 @@ class Course {
 
   show_instructions() {
     load_ahead(this.person.pages[0]);
-    this.show(instruction_view({ texts: this.texts, strings: this.strings, code: this.person.entry.withdrawal_code,
+    this.show(instruction_view({ texts: this.texts, strings: this.strings, widget: this.person.entry.widget, code: this.person.entry.withdrawal_code,
       count: (seen) => this.keep_details({ patches_seen: seen ?? undefined }),
       begin: async () => {
         const { patches_seen } = await this.details();
@@ -177,7 +180,7 @@ class Course {
         await this.attempt(() => (number + 1 < person.pages.length ? this.go_on(number + 1) : this.go_on(null)));
       },
       back: number > 0 ? () => history.back() : null });
-    this.show(view.element, view);
+    this.show(view.element, { page: view });
     view.show();
     load_ahead(person.pages[number + 1]);
     await person.look();
@@ -194,16 +197,17 @@ class Course {
 
   /// Asks again until every picture is there; each failure is counted with the page's answer.
   async pictures_of(page, number, kept) {
-    this.show(h("p", { class: "waiting", role: "status" }, this.strings.pictures_loading));
     for (;;) {
+      const loading = loading_view(this.strings);
+      this.show(loading.element, { judging: true });
       try {
-        return await load_pictures(page, this.strings);
+        return await load_pictures(page, this.strings, loading.progress);
       } catch {
         const earlier = kept.observations ?? {};
         kept.observations = { ...earlier, load_failures: (earlier.load_failures ?? 0) + 1 };
         this.person.save_draft(number, kept);
         await new Promise((again) => this.show(
-          message_view(this.strings.pictures_failed, { name: this.strings.try_again, act: again })));
+          message_view(this.strings.pictures_failed, { name: this.strings.try_again, act: again }), { judging: true }));
       }
     }
   }
@@ -219,7 +223,7 @@ class Course {
       } }));
       return;
     }
-    this.show(h("p", { class: "waiting", role: "status" }, strings.finishing));
+    this.show(h("p", { class: "loading", role: "status" }, strings.finishing));
     await this.attempt(async () => {
       try {
         await this.outbox.flush();
@@ -247,7 +251,7 @@ class Course {
       }
       await this.person.reload();
       await this.go_on(null);
-      this.announce(this.strings.refused(refusal.message), true);
+      this.announce(this.strings.refused(reason_of(refusal, this.strings)), true);
     });
   }
 
@@ -255,7 +259,8 @@ class Course {
     const pages = this.person?.pages ?? [];
     const on_page = this.current !== null && this.current !== undefined;
     const { state } = this.outbox;
-    const text = { saved: this.strings.saved, sending: this.strings.sending, waiting: this.strings.waiting_short }[state];
+    const told = this.person && (state !== "saved" || this.answered);
+    const text = told && { saved: this.strings.saved, sending: this.strings.sending, waiting: this.strings.waiting_short }[state];
     bar.replaceChildren(
       h("span", { class: "bar-title" }, this.welcome ? this.texts.title : ""),
       on_page ? h("div", { class: "progress", role: "img", "aria-label": this.strings.page_of(this.at + 1, pages.length) },
@@ -263,7 +268,7 @@ class Course {
       preview ? h("span", { class: "closing" }, this.strings.preview) : "",
       this.person?.entry.closes_at && on_page
         ? h("span", { class: "closing", role: "status" }, this.strings.closes(new Date(this.person.entry.closes_at))) : "",
-      this.person && text ? h("span", { class: `save ${state}`, role: "status", title: state === "waiting" ? this.strings.waiting : "" },
+      text ? h("span", { class: `save ${state}`, role: "status", title: state === "waiting" ? this.strings.waiting : "" },
         state === "saved" ? icon("check") : h("span", { class: "dot" }), text) : "");
     document.body.classList.toggle("offline", state === "waiting");
   }

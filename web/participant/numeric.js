@@ -19,7 +19,7 @@ export class DigitBoard {
         h("div", { class: "caption" }, h("span", { "aria-hidden": "true" }, picture.letter), field, icon("enlarge")));
     });
     this.element = h("section", { class: "digits" },
-      h("p", {}, `1: ${labels.most} – 9: ${labels.least}`), h("ul", { class: "pictures" }, items));
+      h("p", { class: "scale" }, strings.digits_scale(labels.most, labels.least)), h("ul", { class: "pictures" }, items));
   }
 
   get missing() {

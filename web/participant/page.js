@@ -163,7 +163,7 @@ export class RankingPage {
       missing[0].focus();
       return;
     }
-    if (await confirm_order({ pictures: this.pictures, strings: this.strings,
+    if (await confirm_order({ pictures: this.pictures, labels: this.texts.labels, strings: this.strings,
       ends: () => this.ends(), turn_round: () => this.turn_round() })) {
       await this.submit(this.answer());
     }

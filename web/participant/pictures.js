@@ -33,17 +33,26 @@ const letter_of = (position) =>
   position < 26 ? String.fromCharCode(65 + position) : letter_of(Math.floor(position / 26) - 1) + letter_of(position % 26);
 
 /// The pictures of a page by slot, in the order shown. A picture's letter follows its place on this
-/// page and nothing else. Throws if any cannot be loaded or decoded.
-export async function load_pictures(page, strings) {
-  const one = async ({ slot, url }, position) => {
+/// page and nothing else. `progress(done, total)` is told after each picture. Throws if any cannot be
+/// loaded or decoded.
+export async function load_pictures(page, strings, progress) {
+  const total = page.images.length + (page.reference ? 1 : 0);
+  let done = 0;
+  const counted = async (url) => {
     const image = await decoded(url);
+    progress(++done, total);
+    return image;
+  };
+  progress(0, total);
+  const one = async ({ slot, url }, position) => {
+    const image = await counted(url);
     const letter = letter_of(position);
     return [String(slot), { slot: String(slot), url, letter, name: strings.picture(letter),
       width: image.naturalWidth, height: image.naturalHeight }];
   };
   const [pairs] = await Promise.all([
     Promise.all(page.images.map(one)),
-    page.reference ? decoded(page.reference.url) : null,
+    page.reference ? counted(page.reference.url) : null,
   ]);
   return new Map(pairs);
 }

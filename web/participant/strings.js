@@ -6,7 +6,7 @@ const english_ordinals = ["first", "second", "third", "fourth", "fifth", "sixth"
 const dutch_ordinals = ["eerste", "tweede", "derde", "vierde", "vijfde", "zesde", "zevende", "achtste",
   "negende", "tiende", "elfde", "twaalfde"];
 
-const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /// Counted from the nearer end, so that few words reach every shelf of a long scale.
 function shelf_name(shelf, count, ordinals, words) {
@@ -23,8 +23,6 @@ const en = {
   loading: "One moment…",
   start: "I agree and want to take part",
   consent_heading: "Taking part",
-  not_open: "This survey is not open at the moment.",
-  full: "This survey takes no more participants. Thank you for coming.",
   over_heading: "This survey is over",
   over_kept: (answered, pages) => (answered === 0
     ? "It was closed before you answered a page. Nothing about your answers is kept."
@@ -39,19 +37,21 @@ const en = {
   window: (width, height) =>
     `Please make this window larger: the pictures need at least ${width} by ${height}.`,
   how_heading: "How it works",
-  how_steps: (most, least) => [
-    ["Look", "On each page you see pictures of one scene. They differ only in their shadows."],
-    ["Order", `Put every picture on a shelf, from “${most}” at the top to “${least}” at the bottom. ` +
-      "Pictures that look equally realistic go on the same shelf. Shelves may stay empty."],
-    ["Look closer", "Enlarge a picture, or flip between two of them in the same place."],
-  ],
+  how_look: ["Look", "On each page you see several pictures of one scene."],
+  how_closer: ["Look closer", "Enlarge a picture, or flip between two of them in the same place."],
+  how_shelves: (most, least) => ["Order", `Put every picture on a shelf, from “${most}” at the top to ` +
+    `“${least}” at the bottom. Pictures that you hold to be equal in this go on the same shelf. ` +
+    "Shelves may stay empty."],
+  how_digits: (most, least) => ["Rank", `Give every picture a digit, from 1 for “${most}” to 9 for “${least}”. ` +
+    "Pictures that you hold to be equal in this get the same digit. Not every digit has to be used."],
+  digits_scale: (most, least) => `1 is “${most}”, 9 is “${least}”. Equal digits are allowed.`,
   how_ways: "Drag a picture to its shelf, or choose it and then choose the shelf. On a keyboard, N " +
     "goes to the next picture to place and, when none is left, to the question below; the up and down arrows move the picture in focus, " +
     "Home, M and End move it to the top, the middle and the bottom, the left and right arrows go to its neighbours, " +
     "Delete takes it back and E enlarges it, as a double click does.",
   board_keys: "N next · ↑ ↓ move · Home M End top, middle, bottom · E enlarge · Delete back",
   screen_heading: "Check your screen",
-  screen_text: "Shadows are dark. If you cannot tell the patches apart, turn your screen brighter or move away from bright light.",
+  screen_text: "Parts of the pictures are dark. If you cannot tell the patches apart, turn your screen brighter or move away from bright light.",
   screen_patches: "A row of dark grey patches, each a little lighter than the one before",
   patches_seen: "How many patches can you tell apart?",
   demographics_heading: "About you",
@@ -59,6 +59,7 @@ const en = {
   no_answer: "I would rather not say",
   begin: "Show the first page",
   pictures_loading: "Loading the pictures…",
+  pictures_loaded: (done, total) => `${done} of ${total}`,
   pictures_failed: "Not every picture could be loaded. Nothing is lost; please try again.",
   page_of: (page, count) => `Page ${page} of ${count}`,
   practice: "Practice page",
@@ -81,7 +82,7 @@ const en = {
   tray: "Pictures to place",
   tray_empty: "Every picture is on a shelf.",
   tray_back: "Back among the pictures to place",
-  reference: "The true shadows, for comparison",
+  reference: "The true picture, for comparison",
   reference_short: "true",
   shelves: "Shelves",
   picture: (letter) => `Picture ${letter}`,
@@ -106,13 +107,11 @@ const en = {
   difficulty_missing: "Please say how hard it was to see a difference.",
   unplaced_missing: (names, all) => (names.length === all ? "No picture is on a shelf yet."
     : `Not on a shelf yet: ${names.join(", ")}.`),
-  digits_missing: (names) => `Please rank ${names.join(", ")}.`,
+  digits_missing: (names) => `Please give a digit to ${names.join(", ")}.`,
   missing_heading: "Something is missing",
   next: "Continue",
   back: "Back",
   confirm_heading: "Is this right?",
-  confirm_most: "Most realistic",
-  confirm_least: "Least realistic",
   confirm_same: "You say that all pictures look the same.",
   confirm_yes: "Yes, continue",
   confirm_swap: "It is the other way round",
@@ -133,9 +132,22 @@ const en = {
   sending: "Saving…",
   waiting: "No connection. Your answers are kept on this device and are sent as soon as possible.",
   waiting_short: "Kept on this device",
-  refused: (message) => `An answer could not be stored: ${message}`,
+  refused: (reason) => `An answer could not be stored. ${reason}`,
+  errors: {
+    bad_value: "Something that was sent is not as the survey expects it.",
+    unauthorized: "This needs the researcher's access.",
+    forbidden: "This is not allowed here.",
+    not_found: "There is nothing at this address.",
+    conflict: "This does not fit what was stored before.",
+    "conflict answer_id": "Another answer was stored under this number.",
+    "conflict participant": "This survey was completed already.",
+    "conflict quota": "This survey takes no more participants. Thank you for coming.",
+    "conflict study": "This survey is not open at the moment.",
+    too_large: "What was sent is too large.",
+    otherwise: "The server cannot do this.",
+  },
   finishing: "Sending your last answers…",
-  end_heading: "Thank you",
+  end_heading: "You have finished",
   completion: "Your completion code",
   completion_link: "Return to the site that sent you",
   withdrawal: "Your withdrawal code",
@@ -149,7 +161,7 @@ const en = {
   withdrawn: "All answers given under this code are deleted.",
   withdraw_unknown: "No answers belong to this code. Please check it.",
   gone: "Your answers have been deleted, or this survey has been closed.",
-  digit: (picture) => `Rank of ${picture}`,
+  digit: (picture) => `Digit for ${picture}`,
 };
 
 const nl = {
@@ -158,8 +170,6 @@ const nl = {
   loading: "Een ogenblik…",
   start: "Ik ga akkoord en doe mee",
   consent_heading: "Meedoen",
-  not_open: "Dit onderzoek is op dit moment niet open.",
-  full: "Dit onderzoek neemt geen deelnemers meer aan. Dank voor uw komst.",
   over_heading: "Deze enquête is voorbij",
   over_kept: (answered, pages) => (answered === 0
     ? "Ze werd gesloten voordat u een pagina had beantwoord. Van uw antwoorden is niets bewaard."
@@ -174,19 +184,22 @@ const nl = {
   window: (width, height) =>
     `Maak dit venster groter: de plaatjes vragen minstens ${width} bij ${height}.`,
   how_heading: "Zo werkt het",
-  how_steps: (most, least) => [
-    ["Kijken", "Op elke pagina ziet u plaatjes van één scène. Alleen de schaduwen verschillen."],
-    ["Ordenen", `Zet elk plaatje op een plank, van “${most}” bovenaan tot “${least}” onderaan. ` +
-      "Plaatjes die er even realistisch uitzien, gaan op dezelfde plank. Planken mogen leeg blijven."],
-    ["Beter kijken", "Vergroot een plaatje, of wissel er twee af op dezelfde plek."],
-  ],
+  how_look: ["Kijken", "Op elke pagina ziet u een aantal plaatjes van één scène."],
+  how_closer: ["Beter kijken", "Vergroot een plaatje, of wissel er twee af op dezelfde plek."],
+  how_shelves: (most, least) => ["Ordenen", `Zet elk plaatje op een plank, van “${most}” bovenaan tot ` +
+    `“${least}” onderaan. Plaatjes die u hierin gelijk vindt, gaan op dezelfde plank. ` +
+    "Planken mogen leeg blijven."],
+  how_digits: (most, least) => ["Rangschikken", `Geef elk plaatje een cijfer, van 1 voor “${most}” tot 9 voor ` +
+    `“${least}”. Plaatjes die u hierin gelijk vindt, krijgen hetzelfde cijfer. ` +
+    "U hoeft niet elk cijfer te gebruiken."],
+  digits_scale: (most, least) => `1 is “${most}”, 9 is “${least}”. Gelijke cijfers mogen.`,
   how_ways: "Sleep een plaatje naar zijn plank, of kies eerst het plaatje en dan de plank. Met het toetsenbord " +
     "gaat N naar het volgende te plaatsen plaatje en, als er geen meer is, naar de vraag eronder; de pijlen omhoog en omlaag verplaatsen het plaatje, " +
     "Home, M en End zetten het bovenaan, in het midden en onderaan, de pijlen links en rechts gaan naar de buren, " +
     "Delete haalt het terug en E vergroot het, net als dubbelklikken.",
   board_keys: "N volgende · ↑ ↓ schuiven · Home M End boven, midden, onder · E vergroot · Delete terug",
   screen_heading: "Controleer uw scherm",
-  screen_text: "Schaduwen zijn donker. Kunt u de vlakjes niet uit elkaar houden, zet uw scherm dan helderder of ga uit het felle licht.",
+  screen_text: "Delen van de plaatjes zijn donker. Kunt u de vlakjes niet uit elkaar houden, zet uw scherm dan helderder of ga uit het felle licht.",
   screen_patches: "Een rij donkergrijze vlakjes, elk iets lichter dan het vorige",
   patches_seen: "Hoeveel vlakjes kunt u onderscheiden?",
   demographics_heading: "Over u",
@@ -194,6 +207,7 @@ const nl = {
   no_answer: "Dat zeg ik liever niet",
   begin: "Toon de eerste pagina",
   pictures_loading: "De plaatjes worden geladen…",
+  pictures_loaded: (done, total) => `${done} van ${total}`,
   pictures_failed: "Niet elk plaatje kon worden geladen. Er is niets verloren; probeer het opnieuw.",
   page_of: (page, count) => `Pagina ${page} van ${count}`,
   practice: "Oefenpagina",
@@ -216,7 +230,7 @@ const nl = {
   tray: "Nog te plaatsen",
   tray_empty: "Elk plaatje staat op een plank.",
   tray_back: "Terug bij de te plaatsen plaatjes",
-  reference: "De ware schaduwen, ter vergelijking",
+  reference: "Het ware plaatje, ter vergelijking",
   reference_short: "waar",
   shelves: "Planken",
   picture: (letter) => `Plaatje ${letter}`,
@@ -241,13 +255,11 @@ const nl = {
   difficulty_missing: "Geef aan hoe moeilijk het was om verschil te zien.",
   unplaced_missing: (names, all) => (names.length === all ? "Er staat nog geen plaatje op een plank."
     : `Nog niet op een plank: ${names.join(", ")}.`),
-  digits_missing: (names) => `Geef een plaats aan ${names.join(", ")}.`,
+  digits_missing: (names) => `Geef een cijfer aan ${names.join(", ")}.`,
   missing_heading: "Er ontbreekt iets",
   next: "Verder",
   back: "Terug",
   confirm_heading: "Klopt dit?",
-  confirm_most: "Meest realistisch",
-  confirm_least: "Minst realistisch",
   confirm_same: "U zegt dat alle plaatjes er hetzelfde uitzien.",
   confirm_yes: "Ja, verder",
   confirm_swap: "Het is andersom",
@@ -268,9 +280,22 @@ const nl = {
   sending: "Opslaan…",
   waiting: "Geen verbinding. Uw antwoorden blijven op dit apparaat en worden zo snel mogelijk verstuurd.",
   waiting_short: "Op dit apparaat bewaard",
-  refused: (message) => `Een antwoord kon niet worden opgeslagen: ${message}`,
+  refused: (reason) => `Een antwoord kon niet worden opgeslagen. ${reason}`,
+  errors: {
+    bad_value: "Iets wat is verstuurd, is niet zoals het onderzoek het verwacht.",
+    unauthorized: "Hiervoor is de toegang van de onderzoeker nodig.",
+    forbidden: "Dit mag hier niet.",
+    not_found: "Op dit adres is niets.",
+    conflict: "Dit past niet bij wat eerder is opgeslagen.",
+    "conflict answer_id": "Onder dit nummer is een ander antwoord opgeslagen.",
+    "conflict participant": "Dit onderzoek was al afgerond.",
+    "conflict quota": "Dit onderzoek neemt geen deelnemers meer aan. Dank voor uw komst.",
+    "conflict study": "Dit onderzoek is op dit moment niet open.",
+    too_large: "Wat is verstuurd, is te groot.",
+    otherwise: "De server kan dit niet doen.",
+  },
   finishing: "Uw laatste antwoorden worden verstuurd…",
-  end_heading: "Dank u wel",
+  end_heading: "U bent klaar",
   completion: "Uw voltooiingscode",
   completion_link: "Terug naar de site waar u vandaan kwam",
   withdrawal: "Uw intrekkingscode",
@@ -284,10 +309,17 @@ const nl = {
   withdrawn: "Alle antwoorden onder deze code zijn gewist.",
   withdraw_unknown: "Bij deze code horen geen antwoorden. Controleer de code.",
   gone: "Uw antwoorden zijn gewist, of dit onderzoek is gesloten.",
-  digit: (picture) => `Plaats van ${picture}`,
+  digit: (picture) => `Cijfer voor ${picture}`,
 };
 
 export const languages = { en, nl };
+
+/// What a failed call means, in the participant's language: by code and field of the server's error,
+/// whose own message is English and written for researchers.
+export function reason_of(error, strings) {
+  if (error.passing) return strings.unreachable;
+  return strings.errors[`${error.code} ${error.field}`] ?? strings.errors[error.code] ?? strings.errors.otherwise;
+}
 
 /// Texts of a language; a study in another one keeps its own texts and gets English around them.
 export const strings_of = (language) => languages[language] ?? en;

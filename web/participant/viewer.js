@@ -2,6 +2,7 @@
 // same place, or two side by side, always by the viewer's own hand. Zoom and position stay the same.
 
 import { h, icon } from "/assets/shared/dom.js";
+import { fit_to_device_pixels } from "./pixels.js";
 
 const zooms = [1, 2, 4, 8];  // device pixels per picture pixel: whole numbers keep every pixel equal
 
@@ -150,12 +151,9 @@ export class Viewer {
   }
 
   measure() {
-    const scale = zooms[this.zoom] / devicePixelRatio;
     for (const [pane, slot] of [[this.panes[0], this.shown], [this.panes[1], this.other]]) {
       if (!this.row.contains(pane.element)) continue;
-      const picture = this.pictures.get(slot);
-      pane.image.style.width = `${picture.width * scale}px`;
-      pane.image.style.height = `${picture.height * scale}px`;
+      fit_to_device_pixels(pane.image, pane.stage, this.pictures.get(slot), zooms[this.zoom]);
     }
     this.closer_button.setAttribute("aria-disabled", String(this.zoom === zooms.length - 1));
     this.further_button.setAttribute("aria-disabled", String(this.zoom === 0));

@@ -1,7 +1,7 @@
 // Before the first page: what this is about, consent, how it works, and a look at the screen.
 
 import { h, paragraphs } from "/assets/shared/dom.js";
-import { languages, strings_of } from "./strings.js";
+import { languages, reason_of, strings_of } from "./strings.js";
 import { withdrawal_form } from "./end.js";
 
 function language_choice(welcome, language, strings, choose) {
@@ -24,8 +24,7 @@ export function consent_view({ welcome, language, texts, agree, choose }) {
       await agree();
     } catch (error) {
       if (error.field === "consent_version") location.reload();  // agreed to a text that has changed since
-      const full = error.status === 409 && error.field === "study";
-      problem.textContent = error.passing ? strings.unreachable : full ? strings.full : error.message;
+      problem.textContent = reason_of(error, strings);
     }
     start.disabled = false;
   } } }, strings.start);
@@ -58,15 +57,31 @@ function patches(strings, count) {
 }
 
 /// How to do it. `begin()` shows the first page, `count(seen)` keeps the number of patches told apart.
-export function instruction_view({ texts, strings, code, begin, count }) {
-  const steps = strings.how_steps(texts.labels.most, texts.labels.least);
+export function instruction_view({ texts, strings, widget, code, begin, count }) {
+  const numeric = widget === "numeric";
+  const { most, least } = texts.labels;
+  const steps = [strings.how_look, (numeric ? strings.how_digits : strings.how_shelves)(most, least), strings.how_closer];
   return h("article", { class: "card" },
     h("h1", { tabindex: "-1" }, strings.how_heading),
     h("ol", { class: "how" }, steps.map(([name, text]) => h("li", {}, h("h2", {}, name), h("p", {}, text)))),
-    h("p", { class: "small" }, strings.how_ways),
+    numeric ? null : h("p", { class: "small" }, strings.how_ways),
     patches(strings, count),
     h("p", { class: "small" }, `${strings.withdrawal}: `, h("code", {}, code), `. ${strings.withdrawal_text}`),
     h("div", { class: "actions" }, h("button", { type: "button", class: "primary", on: { click: begin } }, strings.begin)));
+}
+
+/// What is seen while pictures are fetched. `progress(done, total)` moves its bar.
+export function loading_view(strings) {
+  const bar = h("progress", { max: "1", value: "0", "aria-labelledby": "loading" });
+  const count = h("p", { "aria-hidden": "true" });
+  return {
+    element: h("div", { class: "loading" }, h("p", { id: "loading", role: "status" }, strings.pictures_loading), bar, count),
+    progress: (done, total) => {
+      bar.max = total;
+      bar.value = done;
+      count.textContent = strings.pictures_loaded(done, total);
+    },
+  };
 }
 
 /// A single message, with a way on where there is one.

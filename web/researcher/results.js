@@ -94,24 +94,44 @@ function flags_table(flags) {
       h("td", { class: "number" }, significant(flag.value)), h("td", { class: "number" }, significant(flag.threshold)))))));
 }
 
-export function results_section(results, study) {
-  const alpha = study.document.analysis?.alpha ?? 0.05;
-  const label = labels_of(study);
-  const body = h("div", {});
-  const draw = (set) => {
-    const part = results.included_sets[set];
-    body.replaceChildren(...[
+/// Results that are updated while answers come in. The choice of participants stays as it is, focus
+/// and an open list included: only what depends on the answers is replaced.
+export class Results {
+  constructor() {
+    this.choice = h("select", { id: "included", on: { change: () => this.draw() } });
+    this.body = h("div", {});
+    this.content = h("div", { hidden: true }, h("h2", {}, "Results"),
+      h("p", { class: "choose" }, h("label", { for: "included" }, "Participants"), this.choice),
+      h("p", { class: "small" }, "Rank 1 is most realistic. Tables show means weighted by how easy the differences were to see; techniques in one column do not differ significantly."),
+      this.body);
+    this.note = h("p", { hidden: true }, "No answers yet.");
+    this.element = h("section", {}, this.note, this.content);
+  }
+
+  update(results, study) {
+    Object.assign(this, { results, study });
+    const names = Object.keys(results.included_sets);
+    this.content.hidden = !results.pages || !names.length;
+    this.note.hidden = !this.content.hidden;
+    if (this.content.hidden) return;
+    const offered = [...this.choice.options].map(({ value }) => value);
+    if (offered.join() !== names.join()) {
+      const chosen = this.choice.value;
+      this.choice.replaceChildren(...names.map((name) => h("option", { value: name }, sets[name] ?? name)));
+      if (names.includes(chosen)) this.choice.value = chosen;
+    }
+    this.draw();
+  }
+
+  draw() {
+    const { results, study } = this;
+    const alpha = study.document.analysis?.alpha ?? 0.05;
+    const label = labels_of(study);
+    const part = results.included_sets[this.choice.value];
+    this.body.replaceChildren(...[
       part.overall?.techniques?.length ? part_section("All scenes", part.overall, label, alpha) : null,
       part.scenes.filter((scene) => scene.techniques.length).map((scene) => part_section(scene.scene, scene, label, alpha)),
+      flags_table(results.flags ?? []),
     ].flat().filter(Boolean));
-  };
-  const names = Object.keys(results.included_sets);
-  const choice = h("select", { id: "included", on: { change: () => draw(choice.value) } },
-    names.map((name) => h("option", { value: name }, sets[name] ?? name)));
-  if (!results.pages || !names.length) return h("p", {}, "No answers yet.");
-  draw(names[0]);
-  return h("div", {}, h("h2", {}, "Results"),
-    h("p", { class: "choose" }, h("label", { for: "included" }, "Participants"), choice),
-    h("p", { class: "small" }, "Rank 1 is most realistic. Tables show means weighted by how easy the differences were to see; techniques in one column do not differ significantly."),
-    body, flags_table(results.flags ?? []));
+  }
 }

@@ -3,7 +3,7 @@
 import { h, icon } from "/assets/shared/dom.js";
 import { get, post, remove, sleep } from "/assets/shared/http.js";
 import { ask } from "./dialogs.js";
-import { results_section } from "./results.js";
+import { Results } from "./results.js";
 import { status_badge } from "./studies.js";
 import { versions_table } from "./versions.js";
 import { words_of } from "./words.js";
@@ -83,15 +83,19 @@ function progress_of(study) {
   ];
 }
 
+/// True once people were let in: before that there is nothing to count or to export.
+
 class StudyView {
   constructor(study, signal) {
     Object.assign(this, { study, signal });
     this.live = h("section", { class: "card" });
     this.problem = h("p", { class: "problems", role: "alert" });
-    this.results = h("section", {});
+    this.results = new Results();
+    this.results_problem = h("p", { class: "problems", role: "alert" });
     this.figures = figures_list(this.version_path("/figures"));
     this.element = h("div", {}, h("p", {}, h("a", { href: "#studies" }, "All studies")),
-      h("h1", { tabindex: "-1" }, study.title), this.live, this.problem, this.results);
+      h("h1", { tabindex: "-1" }, study.title), this.live, this.problem,
+      this.results_problem, this.results.element);
     this.draw();
     this.follow();
   }
@@ -186,7 +190,7 @@ class StudyView {
     this.draw_results();
   }
 
-  /// Fetched again only when somebody has answered since.
+  /// Fetched again only when somebody has answered since. While pictures are rendered there are none.
   async draw_results() {
     const { study } = this;
     const stamp = JSON.stringify([study.hash, study.scenes, study.participants]);
@@ -194,10 +198,11 @@ class StudyView {
     if (!study.hash || study.status === "publishing" || stamp === this.drawn) return;
     this.drawn = stamp;
     try {
-      this.results.replaceChildren(results_section(await get(this.version_path("/results.json")), study));
+      this.results.update(await get(this.version_path("/results.json")), study);
+      this.results_problem.textContent = "";
     } catch (error) {
       this.drawn = null;
-      this.results.replaceChildren(h("p", { class: "problems", role: "alert" }, `The results cannot be shown: ${words_of(error)}`));
+      this.results_problem.textContent = `The results cannot be shown: ${words_of(error)}`;
     }
   }
 
