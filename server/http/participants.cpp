@@ -7,6 +7,7 @@
 #include "server/http/person_state.h"
 #include "server/http/png.h"
 #include "server/http/reply.h"
+#include "server/http/secrets.h"
 #include "server/http/service.h"
 #include "server/http/webp.h"
 #include "study/answer.h"
