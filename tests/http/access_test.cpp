@@ -113,6 +113,7 @@ const std::set<std::string> participants_calls{
     "GET /assets/{folder}/{file}",
     "POST /api/v1/studies/{id}/participants",
     "GET /api/v1/participants/{token}",
+    "PUT /api/v1/participants/{token}/screen",
     "PUT /api/v1/participants/{token}/pages/{page}",
     "GET /api/v1/participants/{token}/pages/{page}/pictures/{slot}",
     "POST /api/v1/participants/{token}/complete",

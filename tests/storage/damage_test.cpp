@@ -103,7 +103,7 @@ TEST_F(Damaged, FlippedBitsNeverGiveAnotherExportFromAServerThatIsReady) {
   const int of_single = noticed;
   for (int i = 0; i < 40; ++i) with_flips(8);
   RecordProperty("noticed", noticed);
-  EXPECT_GT(of_single, 40);  // the others hit bytes that hold nothing
+  EXPECT_GT(of_single, 10);  // the others hit bytes that hold nothing
 }
 
 TEST_F(Damaged, AcknowledgedAnswersThatTheLogLostAreMissed) {
@@ -204,8 +204,7 @@ TEST_F(Damaged, ADataFolderOfAnEarlierVersionIsSealedOnce) {
   {
     SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     for (const auto& migration : migrations())
-      if (migration.path.find("0004") == std::string_view::npos)
-        old.exec(std::string(migration.text));
+      if (migration.path < "schema/migrations/0004") old.exec(std::string(migration.text));
     old.exec("PRAGMA user_version = 3");
     old.exec(
         "INSERT INTO studies (study, version, status, document, seed, created_at) "

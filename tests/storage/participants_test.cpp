@@ -262,7 +262,7 @@ TEST_F(Participation, GivesTheFirstFreePlaceAsTheStudySays) {
 TEST_F(Participation, GivesThePlacesOfPeopleWhoDropOutToOthers) {
   constexpr int people = 500;
   std::mt19937 random(20071);
-  std::vector<ParticipantRecord> inside;
+  std::vector<std::pair<int, ParticipantRecord>> inside;  // since when
   std::set<std::size_t> completed;
   const auto time = [](int second) {
     std::string digits = std::to_string(second);
@@ -271,9 +271,13 @@ TEST_F(Participation, GivesThePlacesOfPeopleWhoDropOutToOthers) {
   std::size_t dropped = 0;
   for (int i = 0; i < people; ++i) {
     auto fresh = person(std::to_string(i), time(i));
-    inside.push_back(participants.enrol(fresh, 0, time(std::max(0, i - 50))));
+    inside.emplace_back(i, participants.enrol(fresh, 0, time(std::max(0, i - 50))));
     if (inside.size() <= 20) continue;
-    const auto chosen = inside.begin() + static_cast<std::ptrdiff_t>(random() % inside.size());
+    // Places of those who stayed away for 50 steps are given to others: all leave before.
+    const bool due = i - inside.front().first > 40;
+    const auto entry =
+        inside.begin() + static_cast<std::ptrdiff_t>(due ? 0 : random() % inside.size());
+    auto* const chosen = &entry->second;
     if (random() % 5 != 0) {
       participants.complete(*chosen, 0, json::object(), time(i));
       EXPECT_TRUE(completed.insert(chosen->place).second) << "two people completed one place";
@@ -281,7 +285,7 @@ TEST_F(Participation, GivesThePlacesOfPeopleWhoDropOutToOthers) {
       ++dropped;
       if (random() % 2 == 0) participants.withdraw(chosen->withdrawal_code, time(i));
     }
-    inside.erase(chosen);
+    inside.erase(entry);
   }
   EXPECT_GT(dropped, 60u);
   // Below the highest place, all but those of people inside and the last who stayed away are done.
