@@ -235,7 +235,7 @@ test("two pictures stand side by side in the viewer with their letters and place
   await person.page.keyboard.press("-");
   await person.page.waitForFunction(() => {
     const [left, right] = document.querySelectorAll(".viewer-stage");
-    return left.scrollTop === right.scrollTop && left.scrollLeft === right.scrollLeft && left.querySelector("img").clientWidth === 512;
+    return left.scrollTop === right.scrollTop && left.scrollLeft === right.scrollLeft && left.querySelector("img").getBoundingClientRect().width === 512;
   });
   assert.match(await person.page.locator(".viewer .keys").innerText(), /side by side/);
   assert.deepEqual(await violations(person.page), []);

@@ -57,7 +57,7 @@ export class Viewer {
   make_thumbnail({ slot, name, url, letter }) {
     const shelf = this.shelf_of(slot);
     const where = this.place_text(slot);
-    const scale = h("span", { class: shelf === null ? "" : "scale" });
+    const scale = h("span", { class: shelf === null ? "" : "thumb-place" });
     if (shelf !== null) scale.style.setProperty("--down", this.lowest > 0 ? shelf / this.lowest : 0);
     return h("button", { type: "button", class: "thumbnail", "aria-label": name, "aria-pressed": "false",
       title: where, on: { click: () => this.choose(slot) } },
