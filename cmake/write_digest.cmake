@@ -1,4 +1,4 @@
-# Writes OUTPUT, a C++ file whose function SYMBOL answers a digest of FILES and of their names (from
+# Writes OUTPUT, a C++ file whose function SYMBOL returns a digest of FILES and of their names (from
 # ROOT). Left untouched where nothing changed, so that nothing is compiled anew.
 string(REGEX MATCH "^(.*)::([^:]+)$" ignored "${SYMBOL}")
 set(namespace "${CMAKE_MATCH_1}")
@@ -12,10 +12,4 @@ endforeach()
 string(SHA256 digest "${lines}")
 string(SUBSTRING "${digest}" 0 12 digest)
 set(text "namespace ${namespace} {\nconst char* ${function}();\nconst char* ${function}() { return \"${digest}\"; }\n}  // namespace ${namespace}\n")
-set(before "")
-if(EXISTS "${OUTPUT}")
-  file(READ "${OUTPUT}" before)
-endif()
-if(NOT before STREQUAL text)
-  file(WRITE "${OUTPUT}" "${text}")
-endif()
+file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT "${text}" @ONLY)

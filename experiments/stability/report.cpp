@@ -6,26 +6,13 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "experiments/stability/html.h"
+#include "experiments/report/page.h"
 #include "figures/charts.h"
 #include "renderer/error.h"
 #include "techniques/registry.h"
 
 namespace penumbra::experiments::stability {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
-std::string line_of(const std::vector<std::string>& cells) {
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i) line += (i > 0 ? "," : "") + quoted(cells[i]);
-  return line + "\r\n";
-}
 
 std::string digits(double value) {
   char text[32];
@@ -38,18 +25,18 @@ std::string optional_digits(const std::optional<double>& value) {
 }
 
 std::string steps_csv(const Report& report) {
-  std::string text = line_of({"technique", "axis", "value", "state", "visibility_rms", "judged",
-                              "shadowed", "false_shadow", "missing_shadow", "lit", "dark",
-                              "non_finite", "code", "field", "message", "seconds"});
+  std::string text = csv_line({"technique", "axis", "value", "state", "visibility_rms", "judged",
+                               "shadowed", "false_shadow", "missing_shadow", "lit", "dark",
+                               "non_finite", "code", "field", "message", "seconds"});
   for (const Finding& finding : report.findings)
     for (const Step& step : finding.steps) {
       const Verdict& v = step.verdict;
       text +=
-          line_of({finding.technique, finding.axis, digits(step.value), to_json(step).at("state"),
-                   digits(v.visibility_rms), std::to_string(v.judged), std::to_string(v.shadowed),
-                   digits(v.false_shadow), digits(v.missing_shadow), std::to_string(v.lit),
-                   std::to_string(v.dark), std::to_string(v.non_finite), step.code, step.field,
-                   step.message, digits(step.seconds)});
+          csv_line({finding.technique, finding.axis, digits(step.value), to_json(step).at("state"),
+                    digits(v.visibility_rms), std::to_string(v.judged), std::to_string(v.shadowed),
+                    digits(v.false_shadow), digits(v.missing_shadow), std::to_string(v.lit),
+                    std::to_string(v.dark), std::to_string(v.non_finite), step.code, step.field,
+                    step.message, digits(step.seconds)});
     }
   return text;
 }
@@ -143,11 +130,19 @@ std::string map_of_errors(const Report& report, const std::string& technique) {
   return figures::draw(map);
 }
 
-std::vector<html::Cell> cells_of(const Finding& finding) {
+/// A value with its unit.
+Cell sorted_by(const std::string& text, double value) {
+  Cell cell(text);
+  cell.is_number = true;
+  cell.number = value;
+  return cell;
+}
+
+std::vector<Cell> cells_of(const Finding& finding) {
   const Axis axis = find_axis(finding.technique, finding.axis);
   const Reason* reason = finding.ends ? reason_of(finding.technique, finding.axis) : nullptr;
   const auto number = [&](const std::optional<double>& value) {
-    return html::Cell{value ? axis.text(*value) : "", value.value_or(0.0)};
+    return value ? sorted_by(axis.text(*value), *value) : Cell("");
   };
   const double gentle = finding.steps.front().verdict.visibility_rms;
   std::string verdict = "holds";
@@ -156,7 +151,7 @@ std::vector<html::Cell> cells_of(const Finding& finding) {
     verdict = reason == nullptr ? "not explained" : reason->required ? "required" : "defect";
   return {{finding.technique},
           {axis.title},
-          {digits(std::round(1e4 * gentle) / 1e4), gentle},
+          Cell(gentle, 4),
           number(finding.holds),
           number(finding.ends),
           {finding.cause},
@@ -167,7 +162,7 @@ std::vector<html::Cell> cells_of(const Finding& finding) {
 
 std::string html_of(const Report& report,
                     const std::vector<std::pair<std::string, std::string>>& figures) {
-  html::Page page("Stability at the extremes");
+  Page page("Stability at the extremes");
   page.paragraph(
       "Every technique is pushed along every axis from gentle to absurd. The judge is exact rays "
       "in "
@@ -189,12 +184,13 @@ std::string html_of(const Report& report,
   page.heading("How far each technique holds");
   for (const auto& [name, svg] : figures) {
     if (name == "errors") continue;
-    page.figure(svg);
+    page.figure(svg, name);
   }
   page.heading("Every technique on every axis");
-  std::vector<std::vector<html::Cell>> rows;
+  std::vector<std::vector<Cell>> rows;
   for (const Finding& finding : report.findings) rows.push_back(cells_of(finding));
-  page.table({"technique", "axis", "gentle rms", "holds to", "first that does not", "what happens",
+  page.table("Findings",
+             {"technique", "axis", "gentle rms", "holds to", "first that does not", "what happens",
               "what the program says", "verdict", "why"},
              rows);
   return page.text();
@@ -220,14 +216,14 @@ double share_held(const Finding& finding, const Axis& axis) {
 }
 
 std::string findings_csv(const Report& report) {
-  std::string text = line_of(
+  std::string text = csv_line(
       {"technique", "axis", "gentle_rms", "holds", "ends", "verdict", "cause", "guard", "why"});
   for (const Finding& finding : report.findings) {
     const auto cells = cells_of(finding);
-    text += line_of({finding.technique, finding.axis,
-                     digits(finding.steps.front().verdict.visibility_rms),
-                     optional_digits(finding.holds), optional_digits(finding.ends), cells[7].text,
-                     finding.cause, finding.guard, cells[8].text});
+    text += csv_line({finding.technique, finding.axis,
+                      digits(finding.steps.front().verdict.visibility_rms),
+                      optional_digits(finding.holds), optional_digits(finding.ends), cells[7].text,
+                      finding.cause, finding.guard, cells[8].text});
   }
   return text;
 }

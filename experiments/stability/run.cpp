@@ -8,9 +8,9 @@
 #include <memory>
 #include <optional>
 
+#include "experiments/engine/results.h"
 #include "experiments/stability/child.h"
 #include "experiments/stability/drawing.h"
-#include "experiments/stability/results.h"
 #include "renderer/error.h"
 
 namespace penumbra::experiments::stability {

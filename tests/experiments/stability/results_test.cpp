@@ -6,8 +6,8 @@
 
 #include <fstream>
 
+#include "experiments/engine/results.h"
 #include "experiments/stability/child.h"
-#include "experiments/stability/results.h"
 #include "renderer/error.h"
 
 namespace penumbra::experiments {
@@ -24,32 +24,9 @@ struct Folder {
   fs::path path;
 };
 
-TEST(Results, are_read_again_and_a_line_that_was_cut_off_is_dropped) {
-  const Folder folder;
-  const fs::path file = folder.path / "results.jsonl";
-  {
-    stability::Results results(file);
-    results.add("a", {{"value", 1}});
-    results.add("b", {{"value", 2}});
-  }
-  const auto whole = fs::file_size(file);
-  std::ofstream(file, std::ios::app) << R"({"key":"c","result":{"val)";
-  {
-    stability::Results results(file);
-    EXPECT_EQ(results.size(), 2u);
-    EXPECT_EQ(results.find("c"), nullptr);
-    EXPECT_EQ(fs::file_size(file), whole);
-    results.add("c", {{"value", 3}});
-  }
-  stability::Results results(file);
-  ASSERT_NE(results.find("c"), nullptr);
-  EXPECT_EQ(results.find("c")->at("value"), 3);
-  EXPECT_EQ(results.find("a")->at("value"), 1);
-}
-
 TEST(Results, name_a_folder_that_is_not_there) {
   try {
-    stability::Results("/nowhere/at/all/results.jsonl");
+    Results("/nowhere/at/all/results.jsonl");
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code, "unwritable");
