@@ -1,10 +1,10 @@
 // How many participants would separate the neighbours of van Sambeek's table 4.9:
 //   bench_claims_survey_power
 //
-// His answers are not published. People are simulated whose expected mean ranks are his means, scaled to the
-// mid-ranks' mean of 5, with ties of two and three, six pages each, for several spreads between
-// people; then the participants for whom the paired t of mean ranks, Bonferroni over 36 pairs, sees
-// each neighbouring difference with a power of 0.8.
+// His answers are not published. People are simulated whose expected mean ranks are his means,
+// scaled to the mid-ranks' mean of 5, with ties of two and three, six pages each, for several
+// spreads between people; then the participants for whom the paired t of mean ranks, Bonferroni
+// over 36 pairs, sees each neighbouring difference with a power of 0.8.
 #include <cstdio>
 
 #include "bench/van_sambeek_2007.h"

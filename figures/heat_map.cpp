@@ -71,7 +71,8 @@ std::string draw(const HeatMap& chart) {
       const HeatMap::Cell& cell = row.cells[c];
       const double x = left + width * static_cast<double>(c);
       if (cell.shade)
-        drawing.rectangle({x, top, x + width - cell_gap, top + height - cell_gap}, colour_of(*cell.shade));
+        drawing.rectangle({x, top, x + width - cell_gap, top + height - cell_gap},
+                          colour_of(*cell.shade));
       drawing.text({x + 0.5 * (width - cell_gap), top + 0.5 * height + 2.0}, cell.text,
                    {.size = cell_text,
                     .anchor = Anchor::middle,

@@ -31,6 +31,8 @@ inline Error unsupported(const std::string& message, std::string field = {}) {
 inline Error unreadable(const std::string& message, std::string field = {}) {
   return {"unreadable", message, std::move(field)};
 }
-inline Error device_error(const std::string& message) { return {"device", message}; }
+inline Error device_error(const std::string& message) {
+  return {"device", message};
+}
 
 }  // namespace penumbra

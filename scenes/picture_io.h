@@ -12,7 +12,8 @@ namespace penumbra::scenes {
 
 /// Pictures as files and as bytes. Encoded bytes depend on the pixels alone: no text, no time.
 
-/// PNG of 1 to 4 channels, 8 bits, sRGB-encoded; compressed for speed.
+/// PNG of 1 to 4 channels, 8 bits, sRGB-encoded, packed for speed: every row as differences to the
+/// left, runs alone. Four channels without a transparent pixel are written as three.
 std::string encode_png(const Image8& picture);
 
 /// EXR of 32-bit float channels. Names are R, G, B, A (or Y) where none are given; else one per

@@ -2,22 +2,6 @@
 
 namespace penumbra::study {
 
-namespace {
-
-/// Hash of the parameters as the study gave them: FNV-1a over the canonical text, 16 digits. It
-/// tells pictures apart; nothing secret hangs on it.
-std::string parameters_hash(const nlohmann::json& parameters) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char byte : parameters.dump()) {
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ull;
-  }
-  std::string text(16, '0');
-  for (std::size_t i = 0; i < 16; ++i) text[15 - i] = "0123456789abcdef"[(hash >> (4 * i)) & 15];
-  return text;
-}
-
-}  // namespace
-
 std::vector<ResponseRow> response_rows(const Study& study, const std::string& hash,
                                        const std::string& participant, const PlannedPage& planned,
                                        int page_index, const Answer& answer,
@@ -38,7 +22,7 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
     row.scene = page.id;
     row.technique = picture.id;
     row.preset = picture.technique;
-    row.parameters_hash = parameters_hash(picture.parameters);
+    row.parameters_hash = picture.parameters_hash;
     row.slot = static_cast<int>(slot);
     row.rank = ranks.at(slot) / 2.0;
     if (!answer.shelves.empty()) row.shelf = answer.shelves[slot];

@@ -43,6 +43,17 @@ class TextReader {
   FaultList& faults;
 };
 
+/// FNV-1a over the canonical text, 16 digits. It tells pictures apart; nothing secret depends on
+/// it.
+std::string parameters_hash(const json& parameters) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char byte : parameters.dump())
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ull;
+  std::string text(16, '0');
+  for (std::size_t i = 0; i < 16; ++i) text[15 - i] = "0123456789abcdef"[(hash >> (4 * i)) & 15];
+  return text;
+}
+
 Picture read_picture(const json& value) {
   Picture picture;
   if (value.is_string()) {
@@ -54,7 +65,12 @@ Picture read_picture(const json& value) {
   const json& keys = value.is_object() ? value : json::object();
   picture.id = keys.value("id", picture.technique);
   picture.label = keys.value("label", picture.id);
+  picture.parameters_hash = parameters_hash(picture.parameters);
   return picture;
+}
+
+Picture reference_picture() {
+  return read_picture({{"technique", "reference"}, {"label", "REF"}});
 }
 
 std::vector<Picture> read_pictures(const json& list, const std::string& path) {
@@ -106,7 +122,7 @@ Page read_page(const json& value, const json& common_techniques, const TextReade
         throw bad_value(path + ".reference", "the techniques already list `reference`");
       }
     }
-    page.pictures.push_back({"reference", "reference", json::object(), "REF"});
+    page.pictures.push_back(reference_picture());
   }
   if (page.pictures.size() < 2) {
     throw bad_value(list_path, "a page needs at least two pictures to rank");
@@ -329,8 +345,7 @@ PageRenders page_renders(const Study& study, const Page& page) {
     renders.pictures.push_back(render_body(study, page, picture));
   }
   if (page.reference == ReferenceUse::shown || page.reference == ReferenceUse::both) {
-    const Picture reference{"reference", "reference", json::object(), "REF"};
-    renders.shown_reference = render_body(study, page, reference);
+    renders.shown_reference = render_body(study, page, reference_picture());
   }
   return renders;
 }

@@ -25,7 +25,8 @@ struct Picture {
   std::string id;         ///< name in exports, unique on its page; the technique's unless given
   std::string technique;  ///< technique or preset, as the render service resolves it
   nlohmann::json parameters = nlohmann::json::object();  ///< override the preset's
-  std::string label;  ///< abbreviation in tables, the id unless given
+  std::string label;            ///< abbreviation in tables, the id unless given
+  std::string parameters_hash;  ///< of the parameters' canonical text
 };
 
 /// What an attentive person answers on a page: one picture before another (a gold item), or all on
@@ -195,8 +196,8 @@ std::vector<nlohmann::json> all_renders(const Study& study);
 /// "languages", "texts": {language: {"title", "introduction", "consent", "question", "most_label",
 /// "least_label", "difficulty_question", "difficulty_labels": [5], "thanks"}}, "widget",
 /// "page_count", "minimum_window": {"width", "height"} | null, "phones_allowed", "id_parameters",
-/// "minimum_patches", "demographics": [{"id", "required", "question": {language: text}, "options": [{"id",
-/// "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
+/// "minimum_patches", "demographics": [{"id", "required", "question": {language: text}, "options":
+/// [{"id", "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
 nlohmann::json welcome_document(const Study& study);
 
 /// The embedded JSON Schema of study documents.

@@ -117,7 +117,7 @@ std::size_t FrameRun::first_light() const {
                                   plan_.lights.begin());
 }
 
-vulkan::Bindings FrameRun::frame_bindings(std::uint32_t index) {
+vulkan::Bindings FrameRun::frame_bindings() {
   const Scene& scene = *request_.scene;
   const CameraMatrices& m = setup_.matrices;
   const auto side = static_cast<float>(setup_.side);
@@ -134,8 +134,7 @@ vulkan::Bindings FrameRun::frame_bindings(std::uint32_t index) {
   frame.window =
       side * glm::vec4(setup_.window.x, setup_.window.y, request_.width, request_.height);
   const GammaTreatment gamma = gamma_treatment(setup_.parameters);
-  frame.options = {static_cast<std::uint32_t>(gamma.decodes), index,
-                   static_cast<std::uint32_t>(request_.seed), gamma.encodes ? 1u : 0u};
+  frame.options = {gamma.encodes ? 1u : 0u, 0u, 0u, 0u};
   const auto words = parameter_block(request_.technique->parameters, setup_.parameters);
   vulkan::Bindings bindings;
   bindings.buffer("FrameBlock", state_.constants.push(frame));
@@ -156,12 +155,13 @@ void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
     if (light) light->choose_points(round);
   state_.constants.reset();
   std::memset(state_.faults.mapped(), 0, state_.faults.size());
-  const vulkan::Bindings bindings = frame_bindings(index);
+  const vulkan::Bindings bindings = frame_bindings();
   if (uncertainty() != nullptr) uncertainty()->begin_round(round.count);
   state_.recorder.begin(count_statistics);
   state_.recorder.pass("geometry", [&](vulkan::Commands& commands) {
     draw_geometry(commands, state_.pipelines, setup_.scene, targets_.geometry, bindings,
-                  glm::mat4(setup_.matrices.clip_from_world));
+                  glm::mat4(setup_.matrices.clip_from_world),
+                  gamma_treatment(setup_.parameters).decodes);
   });
   draw_lights(bindings, index, progress);
   resolve(bindings, false);
@@ -202,7 +202,7 @@ void FrameRun::encode(const ImageF& linear) {
   write_float(state_.device, targets_.linear, linear);
   state_.constants.reset();
   std::memset(state_.faults.mapped(), 0, state_.faults.size());
-  const vulkan::Bindings bindings = frame_bindings(0);
+  const vulkan::Bindings bindings = frame_bindings();
   state_.recorder.begin(false);
   resolve(bindings, true);
   state_.recorder.end();
@@ -237,8 +237,9 @@ void FrameRun::resolve(const vulkan::Bindings& bindings, bool from_linear) {
     all.texture("linear_picture", targets_.linear, Sampling::nearest);
   } else {
     all.texture("radiance", targets_.geometry.radiance, Sampling::nearest);
+    if (setup_.side == 1) source.preamble = "#define ONE_SAMPLE\n";
     if (targets_.linear) {
-      source.preamble = "#define WITH_LINEAR\n";
+      source.preamble += "#define WITH_LINEAR\n";
       state.color_formats.push_back(FrameTargets::linear_format);
       targets.colors.push_back({targets_.linear.slice(0), false, {}});
     }

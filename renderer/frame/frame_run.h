@@ -44,7 +44,7 @@ class FrameRun {
   void check_uncertainty() const;
   /// The first that reaches anything visible, or the number of lights.
   std::size_t first_light() const;
-  vulkan::Bindings frame_bindings(std::uint32_t index);
+  vulkan::Bindings frame_bindings();
   void draw_lights(const vulkan::Bindings& bindings, std::uint32_t index,
                    const std::function<void(double)>& progress);
   void resolve(const vulkan::Bindings& bindings, bool from_linear);

@@ -171,7 +171,7 @@ void LightPass::add_sum(const Frame& frame, const vulkan::Bindings& bindings) {
   });
 }
 
-/// Draws a full-screen program that adds a light to radiance and visibility.
+/// Draws a program over all surfaces that adds a light to radiance and visibility.
 void LightPass::draw_light(
     const Frame& frame, const std::string& fragment_stage,
     const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of) {
@@ -192,6 +192,12 @@ void LightPass::draw_light(
     state.color_formats.push_back(frame.visibility->description().format);
     targets.colors.push_back({frame.visibility->slice(0), true, {}});
   }
+  // The triangle lies at infinity: only what is nearer, a surface, is shaded.
+  state.depth_format = targets.depth_format = frame.geometry.depth.description().format;
+  state.depth_test = true;
+  state.depth_compare = VK_COMPARE_OP_LESS;
+  targets.depth = frame.geometry.depth.slice(0);
+  targets.depth_read_only = true;
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);
   const vulkan::Bindings all = bindings_of(pipeline);
   frame.recorder.pass("shade", [&](vulkan::Commands& commands) {

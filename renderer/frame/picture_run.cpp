@@ -155,6 +155,13 @@ bool PictureRun::window_is_done() const {
 
 void PictureRun::finish_window(const Window& window) {
   const FrameTargets& targets = frame_.targets();
+  ++now_.window;
+  now_.round = 0;
+  if (frame_index_ + 1 < frames_total_) {
+    // The frame is only timed: the last one's picture is the result.
+    if (rounds_.size() > 1) now_.sum.restart();
+    return;
+  }
   ImageF linear, visibility, judged;
   if (rounds_.size() > 1) {
     linear = now_.sum.linear();
@@ -176,8 +183,6 @@ void PictureRun::finish_window(const Window& window) {
   if (targets.diagnostic)
     paste(now_.diagnostic, read_rgba8(state_.device, targets.diagnostic), window, request_,
           samples_per_side(request_.supersampling));
-  ++now_.window;
-  now_.round = 0;
 }
 
 ImageF PictureRun::standard_error(const ImageF& linear) const {

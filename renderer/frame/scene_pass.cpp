@@ -30,7 +30,8 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
 
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
-                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world) {
+                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
+                   int decodes) {
   vulkan::RenderTargets targets;
   targets.width = buffer.width;
   targets.height = buffer.height;
@@ -49,21 +50,16 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   state.depth_test = true;
 
   commands.begin_rendering(targets);
-  // The sky first, over everything: no clear is needed then.
-  vulkan::ProgramSource sky;
-  sky.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
-  state.depth_compare = VK_COMPARE_OP_ALWAYS;
-  commands.bind(pipelines.graphics(sky, state), frame_bindings);
-  commands.full_screen_triangle();
-
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
+  source.preamble = "#define DECODES " + std::to_string(decodes) + "\n";
+  vulkan::ProgramSource textured_source = source;
+  textured_source.preamble += "#define TEXTURED\n";
   state.vertex_input = vulkan::VertexInput::surface;
   state.depth_compare = VK_COMPARE_OP_GREATER;
   state.depth_write = true;
-  const vulkan::Pipeline& pipeline = pipelines.graphics(source, state);
+  const auto& materials = scene.scene().materials;
   const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
@@ -86,14 +82,27 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     while (next < ranges.size() && ranges[next].material == first.material &&
            ranges[next].masked == first.masked && visible(ranges[next]))
       count += ranges[next++].index_count;
-    bindings.texture("surface_texture", scene.texture_of(first.material),
-                     vulkan::Sampling::linear_repeat);
-    commands.bind(pipeline, bindings);
+    const bool textured = materials[first.material].texture >= 0;
+    if (textured)
+      bindings.texture("surface_texture", scene.texture_of(first.material),
+                       vulkan::Sampling::linear_repeat);
+    commands.bind(pipelines.graphics(textured ? textured_source : source, state), bindings);
     commands.constants(glm::uvec2(first.material, first.masked ? 1u : 0u));
     commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
     i = next;
   }
+
+  // The sky where no surface was drawn: together they cover everything, and no clear is needed.
+  vulkan::ProgramSource sky;
+  sky.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
+  state.vertex_input = vulkan::VertexInput::none;
+  state.depth_compare = VK_COMPARE_OP_EQUAL;
+  state.depth_write = false;
+  commands.cull(VK_CULL_MODE_NONE);
+  commands.bind(pipelines.graphics(sky, state), frame_bindings);
+  commands.full_screen_triangle();
   commands.end_rendering();
 }
 

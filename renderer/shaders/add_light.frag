@@ -1,4 +1,4 @@
-// Adds the mean over a light's points to the frame.
+// Adds the mean over a light's points to the frame where there is a surface.
 #include "renderer/shaders/shadow_query.glsl"
 
 uniform sampler2D geometry_position;
@@ -13,7 +13,6 @@ layout(location = 1) out vec2 out_visibility;  // visibility times judged, judge
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
-  if (position.w == 0.0) discard;
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
   Illumination from_center = illuminate(light, light_center(), surface.position);
   vec4 mean = texelFetch(light_sum, texel, 0);

@@ -11,20 +11,28 @@ layout(location = 1) out uvec4 out_words;
 layout(location = 2) out vec4 out_radiance;
 
 layout(std430) readonly buffer MaterialBlock { MaterialData materials[]; };
+#ifdef TEXTURED
 uniform sampler2D surface_texture;
+#endif
 layout(push_constant) uniform DrawBlock { uint material; uint has_holes; } draw;
 
 // Textures and materials arrive decoded once; the gamma parameter may ask for none or twice.
 vec3 decoded(vec3 linear_color) {
-  if (frame.options.x == 0u) return srgb_from_linear(linear_color);
-  if (frame.options.x == 2u) return linear_from_srgb(linear_color);
+#if DECODES == 0
+  return srgb_from_linear(linear_color);
+#elif DECODES == 2
+  return linear_from_srgb(linear_color);
+#else
   return linear_color;
+#endif
 }
 
 void main() {
   MaterialData material = materials[draw.material];
   vec4 color = material.base_color * vertex_color;
-  if (material.surface.w > 0.5) color *= texture(surface_texture, surface_uv);
+#ifdef TEXTURED
+  color *= texture(surface_texture, surface_uv);
+#endif
   if (draw.has_holes != 0u && color.a < material.surface.z) discard;
 
   // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it

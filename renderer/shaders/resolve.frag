@@ -17,6 +17,8 @@ layout(location = 1) out vec4 out_linear;
 vec3 mean_color() {
 #ifdef FROM_LINEAR
   return texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+#elif defined(ONE_SAMPLE)
+  return frame.size.w * texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
 #else
   int side = int(frame.size.z);
   ivec2 first = ivec2(gl_FragCoord.xy) * side;
@@ -34,7 +36,7 @@ void main() {
 #endif
   bool finite = !any(isnan(color)) && !any(isinf(color));
   if (!finite) atomicAdd(non_finite_pixels, 1u);
-  bool encode = frame.options.w != 0u;
+  bool encode = frame.options.x != 0u;
   color = clamp(color, 0.0, 1.0);
   // A value that is no number is shown as magenta, which no scene contains.
   out_encoded = vec4(finite ? (encode ? srgb_from_linear(color) : color) : vec3(1.0, 0.0, 1.0), 1.0);

@@ -1,4 +1,4 @@
-// Fragment stage that adds one light to the frame. The program is this file followed by the
+// Fragment stage that adds one light to the frame where there is a surface. The program is this file followed by the
 // technique's, which defines calculate_shadow. For lights of many points see shade_points.glsl.
 #include "renderer/shaders/shadow_query.glsl"
 
@@ -15,7 +15,6 @@ layout(location = 1) out vec2 out_visibility;  // visibility times judged, judge
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
-  if (position.w == 0.0) discard;
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
   Illumination incoming = illuminate(light, light_center(), surface.position);
   bool judged = is_judged(surface, incoming);

@@ -37,7 +37,7 @@ struct FrameData {
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
   vec4 window;    // samples: xy of the frame's first in the whole picture, zw of all of that
-  uvec4 options;  // x times that colours are decoded, y frame index, z seed, w encodes
+  uvec4 options;  // x whether the picture is sRGB-encoded
 };
 
 struct LightData {
@@ -48,8 +48,8 @@ struct LightData {
               // of a point
   vec4 extent;  // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half
                 // height; m, or tangents of the angle when directional
-  vec4 right;  // xyz unit, along a rectangle's width; w 1 - cosine of inner angle
-  vec4 up;     // xyz unit, along its height; w 1 - cosine of outer angle
+  vec4 right;   // xyz unit, along a rectangle's width; w 1 - cosine of inner angle
+  vec4 up;      // xyz unit, along its height; w 1 - cosine of outer angle
 };
 
 struct MaterialData {

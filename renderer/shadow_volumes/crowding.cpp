@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <memory>
+#include <tuple>
 
 namespace penumbra::shadow_volumes {
 namespace {
@@ -59,6 +62,64 @@ bool contains(const Seen& triangle, const glm::dvec2& place) {
     return glm::dot(edge, glm::dvec3(place, 1.0)) > 0.0;
   });
 }
+
+/// Counts of triangles over a grid of equal cells, each triangle in all cells that its box touches.
+/// No direction meets more triangles than the fullest cell holds. Takes a few operations a
+/// triangle, where a search takes thousands.
+class BoxCounts {
+ public:
+  explicit BoxCounts(const Cell& root)
+      : root_(root),
+        scale_(double{side} / glm::max(root.high - root.low, 1e-290)),
+        steps_((side + 1) * (side + 1)) {}
+
+  void add(const std::array<glm::dvec3, 3>& triangle) {
+    glm::dvec2 low(1e300), high(-1e300);
+    for (const glm::dvec3& corner : triangle) {
+      if (corner.z > 0.0) {
+        low = glm::min(low, glm::dvec2(corner) / corner.z);
+        high = glm::max(high, glm::dvec2(corner) / corner.z);
+        continue;
+      }
+      // Part of it lies behind the light: it may be seen anywhere.
+      low = glm::dvec2(-1e300);
+      high = glm::dvec2(1e300);
+      break;
+    }
+    const glm::dvec2 first = (low - root_.low) * scale_ - rounding;
+    const glm::dvec2 last = (high - root_.low) * scale_ + rounding;
+    if (last.x < 0.0 || last.y < 0.0 || first.x > side || first.y > side) return;
+    const glm::ivec2 begin(glm::clamp(first, 0.0, side - 1.0));
+    const glm::ivec2 end = glm::ivec2(glm::clamp(last, 0.0, side - 1.0)) + 1;
+    ++step(begin.x, begin.y);
+    --step(end.x, begin.y);
+    --step(begin.x, end.y);
+    ++step(end.x, end.y);
+  }
+
+  /// Triangles in the fullest cell. Once only: steps become sums.
+  std::size_t most() {
+    std::int32_t largest = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        if (x > 0) step(x, y) += step(x - 1, y);
+        if (y > 0) step(x, y) += step(x, y - 1);
+        if (x > 0 && y > 0) step(x, y) -= step(x - 1, y - 1);
+        largest = std::max(largest, step(x, y));
+      }
+    return static_cast<std::size_t>(largest);
+  }
+
+ private:
+  static constexpr int side = 512;
+  static constexpr double rounding = 1e-6;  ///< cells; a triangle on a border is in both
+
+  std::int32_t& step(int x, int y) { return steps_[static_cast<std::size_t>(y * (side + 1) + x)]; }
+
+  Cell root_;
+  glm::dvec2 scale_;
+  std::vector<std::int32_t> steps_;  ///< changes of the count along both axes
+};
 
 /// What is said where the search cannot tell.
 enum class Doubt { crowded, empty };
@@ -149,9 +210,10 @@ bool crowded_along(const std::vector<Thrower>& throwers, const WorldLight& light
   const glm::dvec3 up = glm::cross(right, forward);
   Cell root{glm::dvec2(-1.0), glm::dvec2(1.0)};
   if (directional) root = {glm::dvec2(1e300), glm::dvec2(-1e300)};
-  std::vector<Seen> triangles;
+  std::vector<std::array<glm::dvec3, 3>> triangles;
+  triangles.reserve(throwers.size());
   for (const Thrower& thrower : throwers) {
-    std::array<glm::dvec3, 3> corners{};
+    std::array<glm::dvec3, 3>& corners = triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::dvec3& corner = thrower.corners[k];
       corners[k] = {glm::dot(right, corner), glm::dot(up, corner),
@@ -160,13 +222,18 @@ bool crowded_along(const std::vector<Thrower>& throwers, const WorldLight& light
       root.low = glm::min(root.low, glm::dvec2(corners[k]));
       root.high = glm::max(root.high, glm::dvec2(corners[k]));
     }
-    triangles.push_back(seen(corners, thrower.flat));
   }
-  return Search(std::move(triangles), most, doubt).crowded(root);
+  BoxCounts boxes(root);
+  for (const auto& triangle : triangles) boxes.add(triangle);
+  if (boxes.most() <= most) return false;
+  std::vector<Seen> all;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    all.push_back(seen(triangles[i], throwers[i].flat));
+  return Search(std::move(all), most, doubt).crowded(root);
 }
 
-bool crowded(const GpuScene& scene, const WorldLight& light, const VolumeTriangles& triangles,
-             std::size_t most, Doubt doubt) {
+bool search(const GpuScene& scene, const WorldLight& light, const VolumeTriangles& triangles,
+            std::size_t most, Doubt doubt) {
   const std::vector<Thrower> throwers = find_throwers(scene, light, triangles);
   if (throwers.size() <= most) return false;
   if (light.kind == LightKind::directional)
@@ -178,6 +245,25 @@ bool crowded(const GpuScene& scene, const WorldLight& light, const VolumeTriangl
       if (crowded_along(throwers, light, forward, most, doubt)) return true;
     }
   return false;
+}
+
+/// What was found for a scene: the same for all techniques and pictures of it.
+struct Found {
+  using Asked = std::tuple<LightKind, std::array<double, 6>, bool, std::set<std::uint32_t>,
+                           std::size_t, Doubt>;
+  mutable std::map<Asked, bool> answers;
+};
+
+bool crowded(const GpuScene& scene, const WorldLight& light, const VolumeTriangles& triangles,
+             std::size_t most, Doubt doubt) {
+  auto& answers = scene.derived<Found>([] { return std::make_shared<const Found>(); }).answers;
+  const glm::dvec3 &at = light.position, &along = light.direction;
+  const Found::Asked asked{light.kind,    {at.x, at.y, at.z, along.x, along.y, along.z},
+                           triangles.lit, triangles.sheets,
+                           most,          doubt};
+  const auto known = answers.find(asked);
+  if (known != answers.end()) return known->second;
+  return answers[asked] = search(scene, light, triangles, most, doubt);
 }
 
 }  // namespace

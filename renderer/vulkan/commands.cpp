@@ -84,13 +84,16 @@ void global_barrier(VkCommandBuffer commands) {
 }
 
 void run_now(Device& device, const std::function<void(VkCommandBuffer)>& record) {
-  const auto pool = make_pool(device);
-  const auto fence = make_fence(device);
-  VkCommandBuffer commands = make_commands(device, pool);
-  begin_commands(commands);
-  record(commands);
-  global_barrier(commands);
-  submit_and_wait(device, commands, fence);
+  Device::OneTimeWork& kept = device.one_time;
+  if (kept.commands == VK_NULL_HANDLE) {
+    kept.pool = make_pool(device);
+    kept.fence = make_fence(device);
+    kept.commands = make_commands(device, kept.pool);
+  }
+  begin_commands(kept.commands);
+  record(kept.commands);
+  global_barrier(kept.commands);
+  submit_and_wait(device, kept.commands, kept.fence);
 }
 
 void Commands::begin_rendering(const RenderTargets& targets) {
@@ -108,7 +111,8 @@ void Commands::begin_rendering(const RenderTargets& targets) {
   depth.imageView = targets.depth;
   depth.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
   depth.loadOp = targets.clear_depth ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-  depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  depth.storeOp =
+      targets.depth_read_only ? VK_ATTACHMENT_STORE_OP_NONE : VK_ATTACHMENT_STORE_OP_STORE;
   depth.clearValue.depthStencil = {targets.depth_clear_value, 0};
   VkRenderingAttachmentInfo stencil = depth;
   stencil.loadOp = targets.clear_stencil ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;

@@ -29,6 +29,7 @@ struct RenderTargets {
   std::vector<ColorTarget> colors;
   VkImageView depth = VK_NULL_HANDLE;
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
+  bool depth_read_only = false;  ///< tested and left as it is, so that shaders may read it too
   bool clear_depth = false;
   float depth_clear_value = 0.0f;
   bool clear_stencil = false;

@@ -305,6 +305,7 @@ Device::~Device() {
 void Device::release() {
   if (handle != VK_NULL_HANDLE) {
     vkDeviceWaitIdle(handle);
+    one_time = {};
     vkDestroyDevice(handle, nullptr);
     handle = VK_NULL_HANDLE;
   }

@@ -95,6 +95,14 @@ class Device {
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;  ///< null without the extension
   PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
 
+  /// What run_now needs, kept for its next call.
+  struct OneTimeWork {
+    Owned<VkCommandPool> pool;
+    Owned<VkFence> fence;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+  };
+  OneTimeWork one_time;
+
   /// Index of the first memory type among `type_bits` that has all `wanted` and, if there is one,
   /// all `preferred` properties.
   std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted,

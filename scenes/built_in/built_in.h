@@ -37,8 +37,8 @@ Scene make_camera_in_volume();
 Scene make_aircraft();
 Scene make_teapot();
 
-/// Up to some hundred of that aircraft on a square grid, each turned its own way and the smaller the
-/// more there are (Coleman 2006, 6.2).
+/// Up to some hundred of that aircraft on a square grid, each turned its own way and the smaller
+/// the more there are (Coleman 2006, 6.2).
 Scene make_fleet(int count);
 
 /// `sweep:<objects>x<triangles>x<lights>` (van Sambeek 2007, 4.1.1). Throws bad_value (field

@@ -1,4 +1,3 @@
-#include <OpenImageIO/oiioversion.h>
 #include <httplib.h>
 #include <openssl/crypto.h>
 #include <sqlite3.h>
@@ -11,6 +10,7 @@
 
 #include "renderer/error.h"
 #include "renderer/render.h"
+#include "scenes/formats/picture_formats.h"
 #include "server/cli/local_renders.h"
 #include "server/cli/session.h"
 #include "server/jobs/device_lock.h"
@@ -45,7 +45,7 @@ json libraries() {
           {"sqlite", sqlite3_libversion()},
           {"openssl", OpenSSL_version(OPENSSL_VERSION)},
           {"cpp_httplib", CPPHTTPLIB_VERSION},
-          {"openimageio", OIIO_VERSION_STRING}};
+          {"openimageio", scenes::picture_formats().version()}};
 }
 
 json layers() {

@@ -32,7 +32,7 @@ void add_power_command(CLI::App& app, Session& session);       // power
 void add_simulate_command(CLI::App& app, Session& session);    // simulate-study
 void add_doctor_command(CLI::App& app, Session& session);      // doctor
 void add_demo_command(CLI::App& app, Session& session);        // demo
-void add_stability_command(CLI::App& app, Session& session);    // stability
+void add_stability_command(CLI::App& app, Session& session);   // stability
 void add_data_commands(CLI::App& app, Session& session);       // backup, restore, verify, export
 
 /// sweep, tradeoff

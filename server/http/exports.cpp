@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include "server/http/body.h"
+#include "server/http/measured_pictures.h"
 #include "server/http/reply.h"
 #include "server/http/service.h"
 #include "server/http/studies.h"
@@ -16,8 +17,12 @@ using nlohmann::json;
 
 StudyExport export_at(Call& call) {
   auto frozen = published_at(call);
-  const auto counts = call.service.studies.counts(frozen->study.id, frozen->version);
-  return {call.service.participants, std::move(frozen), static_cast<std::size_t>(counts.withdrawn)};
+  auto& studies = call.service.studies;
+  const auto counts = studies.counts(frozen->study.id, frozen->version);
+  const auto pictures = studies.pictures(frozen->study.id, frozen->version);
+  auto measures = measures_shown(*frozen, pictures);
+  return {call.service.participants, std::move(frozen), static_cast<std::size_t>(counts.withdrawn),
+          std::move(measures)};
 }
 
 std::filesystem::path work_folder(const Call& call) {

@@ -30,6 +30,14 @@ std::string request_key(const nlohmann::json& render_request) {
   return sha256(render_request.dump());
 }
 
+study::EnrolmentPlan FrozenStudy::plan(std::size_t place) const {
+  const std::lock_guard lock(plans_mutex);
+  const auto known = plans.find(place);
+  if (known != plans.end()) return known->second;
+  if (plans.size() == most_plans) plans.clear();
+  return plans[place] = study::plan_enrolment(study, seed, place);
+}
+
 std::string FrozenStudy::picture(const study::PlannedPage& planned, std::size_t slot) const {
   if (slot >= planned.slots.size()) return {};
   return pictures_of(*this, planned).digests.at(planned.slots[slot]);

@@ -22,9 +22,9 @@ struct FrozenStudy {
   int version = 1;
   std::uint64_t seed = 0;
 
-  study::EnrolmentPlan plan(std::size_t place) const {
-    return study::plan_enrolment(study, seed, place);
-  }
+  /// What the person at a place is shown, and in which order. Thread-safe; the last ones are kept,
+  /// since a plan is asked for several times in a row.
+  study::EnrolmentPlan plan(std::size_t place) const;
 
   /// SHA-256 of the picture at a slot, or `lost_picture` in a draft and where the database's row is
   /// damaged; empty where there is no such slot.
@@ -38,6 +38,11 @@ struct FrozenStudy {
   };
   std::vector<PagePictures> pages;
   PagePictures practice;
+
+ private:
+  static constexpr std::size_t most_plans = 1024;
+  mutable std::mutex plans_mutex;
+  mutable std::map<std::size_t, study::EnrolmentPlan> plans;  ///< by place
 };
 
 /// Name of a render request in the table of frozen pictures.

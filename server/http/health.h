@@ -10,8 +10,8 @@
 
 namespace penumbra::server::http {
 
-/// Whether the server can keep what it is sent: it writes to the database and to the disk, and reads
-/// the pictures of open studies. Thread-safe.
+/// Whether the server can keep what it is sent: it writes to the database and to the disk, and
+/// reads the pictures of open studies. Thread-safe.
 class Health {
  public:
   Health(const storage::DataFolder& folder_, storage::Database& database_,

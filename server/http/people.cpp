@@ -70,7 +70,7 @@ json participant_body(const FrozenStudy& frozen, const storage::ParticipantData&
 /// Participants of the version for which `wanted` holds.
 json bodies_of(Call& call, const std::function<bool(const storage::ParticipantData&)>& wanted) {
   const auto frozen = published_at(call);
-  StudyExport exported(call.service.participants, frozen, 0);
+  StudyExport exported(call.service.participants, frozen);
   const auto& flags = exported.flags_by_participant();
   auto list = json::array();
   call.service.participants.each(

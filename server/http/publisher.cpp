@@ -7,6 +7,7 @@
 #include "renderer/error.h"
 #include "server/http/clock.h"
 #include "server/http/frozen_study.h"
+#include "server/http/measured_pictures.h"
 #include "server/http/png.h"
 #include "server/http/reply.h"
 #include "study/study.h"
@@ -20,6 +21,19 @@ struct Stopped {};
 constexpr double look_s = 1.0;   // how often a waiting publication looks whether to stop
 constexpr double pause_s = 0.2;  // before the next try where queue, disk or database had no room
 
+/// Participants wait for it, and nothing that others send may end it.
+Submitter publisher_of(const storage::StudyRecord& record) {
+  return {Priority::publication, record.id, {"publication of " + record.id}, {}};
+}
+
+std::string publication_name(const storage::StudyRecord& record) {
+  return "publication of study " + record.id;
+}
+
+std::string measurement_name(const storage::StudyRecord& record) {
+  return "measurement of study " + record.id + " version " + std::to_string(record.version);
+}
+
 }  // namespace
 
 void Publisher::publish(const storage::StudyRecord& draft) {
@@ -28,31 +42,38 @@ void Publisher::publish(const storage::StudyRecord& draft) {
   const auto all = study::all_renders(study);
   studies.start_publishing(draft.id, draft.version, study::study_hash(study),
                            static_cast<int>(all.size()));
-  start(*studies.find(draft.id, draft.version));
+  const auto record = *studies.find(draft.id, draft.version);
+  start(publication_name(record), Earlier::await, [this, record] { run(record); });
 }
 
 void Publisher::resume() {
-  for (const auto& record : studies.being_published()) start(record);
+  for (const auto& record : studies.being_published()) resume(record);
 }
 
 void Publisher::resume(const storage::StudyRecord& publishing) {
-  {
-    const std::lock_guard lock(mutex);
-    const auto found = publications.find(publishing.id);
-    if (found != publications.end() && !found->second->over) return;
-  }
-  start(publishing);
+  start(publication_name(publishing), Earlier::keep, [this, publishing] { run(publishing); });
 }
 
-void Publisher::start(const storage::StudyRecord& record) {
+void Publisher::measure(const storage::StudyRecord& published) {
+  start(measurement_name(published), Earlier::keep,
+        [this, published] { run_measurement(published); });
+}
+
+bool Publisher::is_measuring(const storage::StudyRecord& published) {
+  const std::lock_guard lock(mutex);
+  const auto found = publications.find(measurement_name(published));
+  return found != publications.end() && !found->second->over;
+}
+
+void Publisher::start(const std::string& name, Earlier earlier, const std::function<void()>& work) {
   const std::lock_guard lock(mutex);
   if (stopping) return;
-  auto& publication = publications[record.id];
-  // The study was a draft again, or its thread is over: nothing is waited for here.
-  if (publication && publication->thread.joinable()) publication->thread.join();
+  auto& publication = publications[name];
+  if (publication && !publication->over && earlier == Earlier::keep) return;
+  if (publication) publication->thread.join();
   publication = std::make_unique<Publication>();
-  publication->thread = std::thread([this, record, &over = publication->over] {
-    run(record);
+  publication->thread = std::thread([work, &over = publication->over] {
+    work();
     over = true;
   });
 }
@@ -81,11 +102,12 @@ void Publisher::insist(const std::string& doing, const std::function<void()>& st
 }
 
 void Publisher::run(const storage::StudyRecord& record) {
-  const auto name = "publication of study " + record.id;
+  const auto name = publication_name(record);
   try {
     const auto study = study::parse_study(record.document);
     const auto all = study::all_renders(study);
-    for (const auto& request : all) submit(record, request);  // all workers have something to do
+    for (const auto& request : all)
+      submit(request, publisher_of(record));  // all workers have something to do
     for (const auto& request : all) insist(name, [&] { render_one(record, request); });
     insist(name, [&] {
       for (const auto& [request, picture] : studies.pictures(record.id, record.version))
@@ -108,35 +130,70 @@ void Publisher::run(const storage::StudyRecord& record) {
   }
 }
 
-RenderRecord Publisher::submit(const storage::StudyRecord& record, const nlohmann::json& request) {
-  // Participants wait for it, and nothing that others send may end it.
-  const Submitter who{Priority::publication, record.id, {"publication of " + record.id}, {}};
+RenderRecord Publisher::submit(const nlohmann::json& request, const Submitter& who) {
   RenderRecord submitted;
-  insist("a picture of study " + record.id, [&] { submitted = renders.submit(request, who); });
+  insist("a picture for " + who.client, [&] { submitted = renders.submit(request, who); });
   return submitted;
 }
 
-void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::json& request) {
-  auto render = submit(record, request);
+RenderRecord Publisher::finished(const nlohmann::json& request, const Submitter& who) {
+  auto render = submit(request, who);
   // Where no worker can be had for a while, those that wait end as `busy`: asked for again, they
   // wait.
   while (!is_over(render) || (render.status == "failed" && failure_of(render).code == "busy")) {
     if (stopping) throw Stopped{};
     const auto later = is_over(render) ? std::nullopt : renders.wait(render.id, look_s);
-    render = later ? *later : submit(record, request);
+    render = later ? *later : submit(request, who);
   }
-  if (render.status != "done") {
-    if (stopping) throw Stopped{};
-    const auto& why = render.error;
-    const std::string name = request.value("scene", "") + " with " + request.value("technique", "");
-    throw Error(why.is_object() ? why.value("code", "internal") : "cancelled",
-                name + ": " + (why.is_object() ? why.value("message", "") : render.status));
-  }
+  if (render.status == "done") return render;
+  if (stopping) throw Stopped{};
+  const auto& why = render.error;
+  const std::string name = request.value("scene", "") + " with " + request.value("technique", "");
+  throw Error(why.is_object() ? why.value("code", "internal") : "cancelled",
+              name + ": " + (why.is_object() ? why.value("message", "") : render.status));
+}
+
+void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::json& request) {
+  const auto render = finished(request, publisher_of(record));
   const auto png = renders.artefact(render.id, "image.png");
   if (!png) throw Error("storage", "the picture of " + render.id + " is gone");
   const auto digest = pictures.freeze(packed_tightly(*png));
   pictures.read_webp(digest);  // made now, so that no participant waits for it
-  studies.count_picture(record.id, record.version, request_key(request), {render.id, digest});
+  studies.count_picture(record.id, record.version, request_key(request),
+                        {render.id, digest, measures_of(render)});
+}
+
+void Publisher::run_measurement(const storage::StudyRecord& record) {
+  const auto name = measurement_name(record);
+  const Submitter who{Priority::researcher, name, {name}, {}};
+  std::vector<std::pair<std::string, nlohmann::json>> left;
+  try {
+    insist(name, [&] {
+      left.clear();
+      const auto known = studies.pictures(record.id, record.version);
+      for (auto request : study::all_renders(study::parse_study(record.document))) {
+        const auto key = request_key(request);
+        const auto found = known.find(key);
+        if (found == known.end() || !found->second.measures.is_null()) continue;
+        request["measure"] = true;
+        left.emplace_back(key, request);
+      }
+    });
+    for (const auto& [key, request] : left) {
+      try {
+        const auto measures = measures_of(finished(request, who));
+        insist(name,
+               [&, &key = key] { studies.set_measures(record.id, record.version, key, measures); });
+      } catch (const Error& error) {
+        spdlog::warn("{}: {}", name, error.what());  // the others are measured all the same
+      }
+    }
+    spdlog::info("{} is over", name);
+  } catch (const Stopped&) {
+    spdlog::info("{} was ended by the stop; ask again for the rest", name);
+  } catch (...) {
+    spdlog::error("{} ended: {}", name, error_of(std::current_exception()).what());
+  }
 }
 
 }  // namespace penumbra::server::http

@@ -34,6 +34,13 @@ class Publisher {
   /// Goes on with one study that is being published, where its thread is gone.
   void resume(const storage::StudyRecord& publishing);
 
+  /// Times the pictures of a published version and measures their errors, beside everything else:
+  /// results then hold them against what people saw. What was measured before is left as it is.
+  void measure(const storage::StudyRecord& published);
+
+  /// Whether `measure` is at work on the version.
+  bool is_measuring(const storage::StudyRecord& published);
+
   /// Waits for the threads; they leave after the picture at hand.
   void stop();
 
@@ -43,18 +50,27 @@ class Publisher {
     std::atomic<bool> over{false};
   };
 
-  void start(const storage::StudyRecord& record);
+  enum class Earlier { keep, await };
+
+  /// Runs `work` on a thread of its own under `name`. Where an earlier one of that name is at work
+  /// still, it is kept instead, or awaited because it is known to be at its end.
+  void start(const std::string& name, Earlier earlier, const std::function<void()>& work);
   void insist(const std::string& doing, const std::function<void()>& step);
   void run(const storage::StudyRecord& record);
+  void run_measurement(const storage::StudyRecord& record);
   void render_one(const storage::StudyRecord& record, const nlohmann::json& request);
-  RenderRecord submit(const storage::StudyRecord& record, const nlohmann::json& request);
+  /// Asks until a render could be taken in.
+  RenderRecord submit(const nlohmann::json& request, const Submitter& who);
+  /// Asks and waits until the render is over, again where it ended for want of a worker. Throws its
+  /// error.
+  RenderRecord finished(const nlohmann::json& request, const Submitter& who);
 
   storage::Studies& studies;
   RenderService& renders;
   FrozenPictures& pictures;
   std::atomic<bool> stopping{false};
   std::mutex mutex;
-  std::map<std::string, std::unique_ptr<Publication>> publications;  ///< by study
+  std::map<std::string, std::unique_ptr<Publication>> publications;  ///< by name
 };
 
 }  // namespace penumbra::server::http

@@ -44,6 +44,13 @@ json progress_body(const storage::StudyRecord& record) {
           {"error", record.error}};
 }
 
+json measures_body(Service& service, const storage::StudyRecord& record) {
+  const auto pictures = service.studies.picture_counts(record.id, record.version);
+  return {{"pictures", pictures.measured},
+          {"pictures_total", pictures.frozen},
+          {"at_work", service.publisher.is_measuring(record)}};
+}
+
 json version_body(Service& service, const storage::StudyRecord& record) {
   return {{"version", record.version},
           {"status", record.status},
@@ -109,6 +116,7 @@ json answers_per_page(Service& service, const storage::StudyRecord& record) {
 json body_of(Service& service, const storage::StudyRecord& record) {
   json body = summary_of(service, record);
   body["progress"] = progress_body(record);
+  body["measures"] = measures_body(service, record);
   body["seed"] = record.seed;
   body["grace_minutes"] = study::parse_study(record.document).grace_minutes;
   body["document"] = record.document;
@@ -218,6 +226,13 @@ void publish_study(Call& call) {
   send_version(call, record.status == "open" ? 200 : 202, record.version);
 }
 
+void measure_study(Call& call) {
+  const auto frozen = published_at(call);
+  const auto record = *call.service.studies.find(frozen->study.id, frozen->version);
+  call.service.publisher.measure(record);
+  send_version(call, 202, record.version);
+}
+
 void close_study(Call& call) {
   const auto open = call.service.studies.open_version(call.path.at("id"));
   const auto record = open ? *open : study_at(call);
@@ -274,6 +289,7 @@ void add_study_routes(std::vector<Route>& table) {
   table.push_back({"POST", all, Access::researcher, post_study, study_document});
   table.push_back({"GET", one, Access::researcher, get_study});
   table.push_back({"POST", one + "/publish", Access::researcher, publish_study});
+  table.push_back({"POST", one + "/measure", Access::researcher, measure_study});
   table.push_back({"POST", one + "/close", Access::researcher, close_study});
   table.push_back({"POST", one + "/reopen", Access::researcher, reopen_study});
   table.push_back({"DELETE", one + "/draft", Access::researcher, delete_draft});

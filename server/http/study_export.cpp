@@ -155,15 +155,20 @@ TemporaryFile::~TemporaryFile() {
 }
 
 StudyExport::StudyExport(storage::Participants& participants_,
-                         std::shared_ptr<const FrozenStudy> frozen_, std::size_t withdrawn)
-    : participants(participants_), frozen(std::move(frozen_)) {
+                         std::shared_ptr<const FrozenStudy> frozen_, std::size_t withdrawn,
+                         study::Measures measures_)
+    : participants(participants_),
+      frozen(std::move(frozen_)),
+      measures(std::move(measures_)),
+      options(study::report_options(frozen->study)) {
   attendance.withdrawn = withdrawn;
+  options.measures = measures;
 }
 
-void StudyExport::analyse() {
-  if (!report.is_null()) return;
+/// Reads everybody's answers once.
+void StudyExport::gather() {
+  if (data) return;
   study::statistics::Gatherer gatherer;
-  auto options = study::report_options(frozen->study);
   const auto entries = participants.entries_by_person(frozen->study.id);
   participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
     if (person.participant.test) return;
@@ -180,19 +185,25 @@ void StudyExport::analyse() {
     for (const auto& page : pages)
       for (const auto& row : page) gatherer.add(row);
   });
-  report = study::survey_report(gatherer.finish(), options);
+  data = gatherer.finish();
+}
+
+void StudyExport::find_flags() {
+  if (found_flags) return;
+  gather();
   std::set<std::string> told;
-  for (auto& flag : report.at("flags")) {
+  for (auto& flag : study::survey_flags(*data, options)) {
     add_evidence(flag);
     const auto name = flag.at("participant").get<std::string>();
     flags.try_emplace(name, json::array()).first->second.push_back(flag);
     told.insert(name + " " + flag.at("flag").get<std::string>());
   }
-  for (const auto& flag : flags_of_excluded(options.given_flags))
+  for (const auto& flag : flags_of_excluded())
     if (told.insert(flag.at("participant").get<std::string>() + " " +
                     flag.at("flag").get<std::string>())
             .second)
       flags.try_emplace(flag.at("participant"), json::array()).first->second.push_back(flag);
+  found_flags = true;
 }
 
 StudyExport::InversionEvidence StudyExport::evidence_of(const Pages& pages) {
@@ -222,7 +233,7 @@ void StudyExport::add_evidence(json& flag) const {
 
 /// Statistics leave people aside who were taken out; their flags are the reasons for that and stay.
 /// The given flags are of people without counted pages as well.
-json StudyExport::flags_of_excluded(const std::vector<study::GivenFlag>& given) {
+json StudyExport::flags_of_excluded() {
   auto list = json::array();
   std::set<std::string> excluded;
   for (const auto& one : attendance.excluded) excluded.insert(one.participant);
@@ -244,37 +255,48 @@ json StudyExport::flags_of_excluded(const std::vector<study::GivenFlag>& given) 
         add_evidence(list.back());
       }
   }
-  for (const auto& flag : given) list.push_back(study::flag_json(flag));
+  for (const auto& flag : options.given_flags) list.push_back(study::flag_json(flag));
   return list;
 }
 
 const std::map<std::string, json>& StudyExport::flags_by_participant() {
-  analyse();
+  find_flags();
   return flags;
 }
 
 const json& StudyExport::results() {
-  analyse();
+  if (!report.is_null()) return report;
+  gather();
+  report = study::survey_report(*data, options);
+  for (auto& flag : report.at("flags")) add_evidence(flag);
   return report;
 }
 
 study::ReportContext StudyExport::report_context() {
-  analyse();
-  return {&frozen->study, attendance, study::figure_options(frozen->study)};
+  gather();
+  auto figures = study::figure_options(frozen->study);
+  figures.measures = measures;
+  return {&frozen->study, attendance, figures};
+}
+
+std::string StudyExport::names_of_flags(const std::string& pseudonym) const {
+  const auto found = flags.find(pseudonym);
+  return found == flags.end() ? "" : flag_names(found->second);
 }
 
 void StudyExport::each(const TakePerson& take) {
   participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
     const bool test = person.participant.test;
     auto pages = test ? Pages{} : pages_of(*frozen, person, person.answers);
+    const auto names = names_of_flags(person.participant.pseudonym);
     for (auto& page : pages)
-      for (auto& row : page) row.flags = flag_names(flags[row.participant]);
+      for (auto& row : page) row.flags = names;
     take(person, pages);
   });
 }
 
 void StudyExport::write_responses(const fs::path& file) {
-  analyse();
+  find_flags();
   PieceWriter responses(file);
   responses.add(study::response_header());
   each([&](const auto&, const auto& pages) {
@@ -286,7 +308,8 @@ void StudyExport::write_responses(const fs::path& file) {
 
 void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
                                 const std::vector<storage::Damage>& damage) {
-  analyse();
+  results();
+  find_flags();
   const TemporaryFile responses_file(work, ".csv");
   const TemporaryFile earlier_file(work, ".csv");
   const TemporaryFile wide_file(work, ".csv");
@@ -315,7 +338,7 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   bool first = true;
   each([&](const storage::ParticipantData& person, const auto& pages) {
     people_table.append(participant_row(*frozen, person, checks_of(*frozen, person, entries),
-                                        flag_names(flags[person.participant.pseudonym])),
+                                        names_of_flags(person.participant.pseudonym)),
                         people.text());
     if (person.participant.test) return;
     documents.add((first ? "\n" : ",\n") + scenes::json_text(person_json(*frozen, person)));
@@ -335,7 +358,6 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
     writer->finish();
 
   // Put everything into the archive.
-  const auto options = study::report_options(frozen->study);
   const auto context = report_context();
   ZipWriter zip(archive);
   zip.add_text("report.html", study::html_report(report, context));

@@ -5,13 +5,17 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "server/http/frozen_study.h"
 #include "server/storage/participants.h"
 #include "study/checks.h"
+#include "study/measures.h"
 #include "study/report/html.h"
 #include "study/responses.h"
+#include "study/statistics/report.h"
+#include "study/statistics/survey_data.h"
 
 /// What leaves a study. Everything is written from the data base in portions of people, so that a
 /// study of any size leaves in bounded memory; none of it needs a running server.
@@ -34,9 +38,9 @@ class TemporaryFile {
 /// One published version of a study with its answers.
 class StudyExport {
  public:
-  /// `withdrawn` people deleted their answers.
+  /// `withdrawn` people deleted their answers; `measures` are of the pictures shown.
   StudyExport(storage::Participants& participants, std::shared_ptr<const FrozenStudy> frozen,
-              std::size_t withdrawn);
+              std::size_t withdrawn = 0, study::Measures measures = {});
 
   /// The statistics; computed when first asked for.
   const nlohmann::json& results();
@@ -56,15 +60,21 @@ class StudyExport {
   using TakePerson = std::function<void(const storage::ParticipantData&,
                                         const std::vector<std::vector<study::ResponseRow>>&)>;
 
-  void analyse();
+  void gather();
+  void find_flags();
   void each(const TakePerson& take);
+  std::string names_of_flags(const std::string& pseudonym) const;
   void add_evidence(nlohmann::json& flag) const;
-  nlohmann::json flags_of_excluded(const std::vector<study::GivenFlag>& given);
+  nlohmann::json flags_of_excluded();
 
   storage::Participants& participants;
   std::shared_ptr<const FrozenStudy> frozen;
+  study::Measures measures;
+  std::optional<study::statistics::SurveyData> data;  ///< once gathered
+  study::ReportOptions options;
   nlohmann::json report;
   std::map<std::string, nlohmann::json> flags;  ///< lists by pseudonym
+  bool found_flags = false;
   /// What speaks for or against a scale that was read backwards, beside the flag itself.
   struct InversionEvidence {
     int pages = 0;

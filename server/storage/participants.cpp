@@ -91,42 +91,40 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
 }
 
 /// The current answers of a participant, or those that were replaced.
-std::vector<AnswerRecord> answers_of(Database& database, SQLite::Database& connection,
+std::vector<AnswerRecord> answers_of(Database& database, Connection& connection,
                                      std::int64_t participant, bool current) {
-  SQLite::Statement query(connection,
-                          "SELECT page, answer_id, body, answered_at, intact, row "
-                          "FROM checked_answers "
-                          "WHERE participant = ? AND is_current = ? ORDER BY page, row");
-  query.bind(1, participant);
-  query.bind(2, current ? 1 : 0);
+  auto query = connection.query(
+      "SELECT page, answer_id, body, answered_at, intact, row FROM checked_answers "
+      "WHERE participant = ? AND is_current = ? ORDER BY page, row");
+  query->bind(1, participant);
+  query->bind(2, current ? 1 : 0);
   std::vector<AnswerRecord> found;
-  while (query.executeStep()) {
-    if (query.getColumn(4).getInt() == 0) {
-      report_row(database, connection, "answers", query.getColumn(5).getInt64());
+  while (query->executeStep()) {
+    if (query->getColumn(4).getInt() == 0) {
+      report_row(database, connection, "answers", query->getColumn(5).getInt64());
       continue;
     }
-    found.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
-                     nlohmann::json::parse(query.getColumn(2).getString()),
-                     query.getColumn(3).getString()});
+    found.push_back({query->getColumn(0).getInt(), query->getColumn(1).getString(),
+                     nlohmann::json::parse(query->getColumn(2).getString()),
+                     query->getColumn(3).getString()});
   }
   return found;
 }
 
-std::vector<Exclusion> exclusions_of(Database& database, SQLite::Database& connection,
+std::vector<Exclusion> exclusions_of(Database& database, Connection& connection,
                                      std::int64_t participant) {
-  SQLite::Statement query(connection,
-                          "SELECT excluded, reason, decided_at, intact, row "
-                          "FROM checked_exclusions "
-                          "WHERE participant = ? ORDER BY id");
-  query.bind(1, participant);
+  auto query = connection.query(
+      "SELECT excluded, reason, decided_at, intact, row FROM checked_exclusions "
+      "WHERE participant = ? ORDER BY id");
+  query->bind(1, participant);
   std::vector<Exclusion> found;
-  while (query.executeStep()) {
-    if (query.getColumn(3).getInt() == 0) {
-      report_row(database, connection, "exclusions", query.getColumn(4).getInt64());
+  while (query->executeStep()) {
+    if (query->getColumn(3).getInt() == 0) {
+      report_row(database, connection, "exclusions", query->getColumn(4).getInt64());
       continue;
     }
-    found.push_back({query.getColumn(0).getInt() != 0, query.getColumn(1).getString(),
-                     query.getColumn(2).getString()});
+    found.push_back({query->getColumn(0).getInt() != 0, query->getColumn(1).getString(),
+                     query->getColumn(2).getString()});
   }
   return found;
 }

@@ -200,14 +200,17 @@ void Studies::count_picture(const std::string& id, int version, const std::strin
                             const FrozenPicture& picture) {
   database.write([&](SQLite::Database& connection) {
     SQLite::Statement insert(connection,
-                             "INSERT INTO pictures (study, version, request, render, digest) "
-                             "VALUES (?, ?, ?, ?, ?) ON CONFLICT (study, version, request) "
-                             "DO UPDATE SET render = excluded.render, digest = excluded.digest");
+                             "INSERT INTO pictures (study, version, request, render, digest, "
+                             "measures) VALUES (?, ?, ?, ?, ?, ?) "
+                             "ON CONFLICT (study, version, request) DO UPDATE SET "
+                             "render = excluded.render, digest = excluded.digest, "
+                             "measures = excluded.measures");
     insert.bind(1, id);
     insert.bind(2, version);
     insert.bind(3, request);
     insert.bind(4, picture.render);
     insert.bind(5, picture.digest);
+    if (!picture.measures.is_null()) insert.bind(6, picture.measures.dump());
     insert.exec();
     SQLite::Statement count(connection,
                             "UPDATE studies SET pictures_done = (SELECT COUNT(*) FROM pictures "
@@ -215,6 +218,32 @@ void Studies::count_picture(const std::string& id, int version, const std::strin
     count.bind(1, id);
     count.bind(2, version);
     count.exec();
+  });
+}
+
+void Studies::set_measures(const std::string& id, int version, const std::string& request,
+                           const nlohmann::json& measures) {
+  database.write([&](SQLite::Database& connection) {
+    SQLite::Statement update(connection,
+                             "UPDATE pictures SET measures = ? "
+                             "WHERE study = ? AND version = ? AND request = ?");
+    update.bind(1, measures.dump());
+    update.bind(2, id);
+    update.bind(3, version);
+    update.bind(4, request);
+    update.exec();
+  });
+}
+
+PictureCounts Studies::picture_counts(const std::string& id, int version) {
+  return database.read([&](SQLite::Database& connection) {
+    SQLite::Statement query(connection,
+                            "SELECT COUNT(*), COUNT(measures) FROM pictures "
+                            "WHERE study = ? AND version = ?");
+    query.bind(1, id);
+    query.bind(2, version);
+    query.executeStep();
+    return PictureCounts{query.getColumn(0).getInt(), query.getColumn(1).getInt()};
   });
 }
 
@@ -287,8 +316,8 @@ void Studies::remove_draft(const std::string& id, int version) {
 std::map<std::string, FrozenPicture> Studies::pictures(const std::string& id, int version) {
   return database.read([&](SQLite::Database& connection) {
     SQLite::Statement query(connection,
-                            "SELECT request, render, digest, intact, row FROM checked_pictures "
-                            "WHERE study = ? AND version = ?");
+                            "SELECT request, render, digest, intact, row, measures "
+                            "FROM checked_pictures WHERE study = ? AND version = ?");
     query.bind(1, id);
     query.bind(2, version);
     std::map<std::string, FrozenPicture> found;
@@ -297,8 +326,11 @@ std::map<std::string, FrozenPicture> Studies::pictures(const std::string& id, in
         database.report({"pictures", query.getColumn(4).getInt64(), "", unfit});
         continue;
       }
-      found[query.getColumn(0).getString()] = {query.getColumn(1).getString(),
-                                               query.getColumn(2).getString()};
+      auto& picture = found[query.getColumn(0).getString()];
+      picture.render = query.getColumn(1).getString();
+      picture.digest = query.getColumn(2).getString();
+      if (!query.getColumn(5).isNull())
+        picture.measures = nlohmann::json::parse(query.getColumn(5).getString());
     }
     return found;
   });

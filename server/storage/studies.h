@@ -29,8 +29,15 @@ struct StudyRecord {
 
 /// A picture frozen with a version.
 struct FrozenPicture {
-  std::string render;  ///< id of the render
-  std::string digest;  ///< SHA-256 of the PNG
+  std::string render;       ///< id of the render
+  std::string digest;       ///< SHA-256 of the PNG
+  nlohmann::json measures;  ///< {name: number} of the render; null until it was measured
+};
+
+/// Pictures of a version.
+struct PictureCounts {
+  int frozen = 0;
+  int measured = 0;
 };
 
 struct StudyCounts {
@@ -72,6 +79,10 @@ class Studies {
   void start_publishing(const std::string& id, int version, const std::string& hash, int pictures);
   void count_picture(const std::string& id, int version, const std::string& request,
                      const FrozenPicture& picture);
+  /// Keeps what was measured of a frozen picture, by name.
+  void set_measures(const std::string& id, int version, const std::string& request,
+                    const nlohmann::json& measures);
+  PictureCounts picture_counts(const std::string& id, int version);
   /// publishing -> open; an open earlier version is closed.
   void open(const std::string& id, int version, const std::string& now);
   /// publishing -> draft, with the reason.

@@ -215,6 +215,10 @@ std::string statistics_table(const json& report, const ReportOptions& options,
                    options);
 }
 
+json survey_flags(const SurveyData& data, const ReportOptions& options) {
+  return flags_json(data, all_flags(data, options));
+}
+
 json screening_flags(const SurveyData& data, const Screening& screening) {
   return flags_json(data, statistics::screen(data, screening));
 }

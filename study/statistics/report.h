@@ -47,6 +47,9 @@ nlohmann::json statistics_report(const std::vector<ResponseRow>& rows,
 std::string statistics_table(const nlohmann::json& report, const ReportOptions& options,
                              const std::string& set = "all");
 
+/// The report's `flags`: those that ranks give reason for, and the given ones of people with ranks.
+nlohmann::json survey_flags(const statistics::SurveyData& data, const ReportOptions& options);
+
 /// Flags per participant: [{"participant","flag","value","threshold","reason"}], those that ranks
 /// give reason for.
 nlohmann::json screening_flags(const statistics::SurveyData& data, const Screening& screening);

@@ -234,9 +234,9 @@ TEST_F(ProgramTest, writes_every_format_it_names) {
 }
 
 TEST_F(ProgramTest, times_the_same_view_without_shadows_beside) {
-  const Outcome outcome = run(
-      "measure boxes shadow-map --set map_size=2048 --width 32 --height 32 --light-samples 16 "
-      "--frames 3 --json");
+  const Outcome outcome =
+      run("measure boxes shadow-map --set map_size=2048 --width 32 --height 32 --light-samples 16 "
+          "--frames 3 --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json frame = json::parse(outcome.out).at("cost").at("frame_ms");
   // A map of 2048 x 2048 for 32 x 32 pixels takes many times what the pixels do.

@@ -112,7 +112,8 @@ TEST_P(Conformance, every_diagnostic_picture_draws) {
     const Image8 picture = renderer().render(request).diagnostic;
     EXPECT_EQ(picture.width, 32u);
     // Something is to be seen: not all pixels are alike.
-    const auto first = std::vector<std::uint8_t>(picture.pixels.begin(), picture.pixels.begin() + 4);
+    const auto first =
+        std::vector<std::uint8_t>(picture.pixels.begin(), picture.pixels.begin() + 4);
     bool varies = false;
     for (std::size_t i = 4; i < picture.pixels.size(); ++i)
       varies = varies || picture.pixels[i] != first[i % 4];

@@ -14,7 +14,8 @@ vulkan::PassRecord record(const std::string& name, double ms) {
 
 TEST(CostReport, tells_median_upper_tail_and_spread_of_repeats) {
   CostReport report;
-  report.add({record("map", 100.0), record("shade", 100.0)}, 300.0, false);  // compiles: not counted
+  report.add({record("map", 100.0), record("shade", 100.0)}, 300.0,
+             false);  // compiles: not counted
   for (const double ms : {9.0, 1.0, 5.0, 3.0, 7.0, 2.0, 8.0, 4.0, 6.0})
     report.add({record("map", ms), record("shade", 1.0)}, ms + 2.0, true);
   const Cost cost = report.summary();

@@ -152,7 +152,8 @@ TEST_F(Costs, a_pass_made_four_times_heavier_grows_and_the_others_do_not) {
 }
 
 TEST_F(Costs, passes_add_up_to_the_frames_wall_time) {
-  // Submitting a frame takes some tenths of a millisecond on any device: there must be work beside it.
+  // Submitting a frame takes some tenths of a millisecond on any device: there must be work beside
+  // it.
   std::int64_t steps = 800;
   while (measured(steps, steps).wall_median_ms < 10.0 && steps < 100000) steps *= 4;
   steps = std::min<std::int64_t>(steps, 100000);

@@ -15,8 +15,8 @@ void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high);
 /// it.
 Scene open_ground();
 
-/// The same with a slab at y = 1 that hides the light from all of the ground; the camera looks under
-/// it from the side, standing in the light.
+/// The same with a slab at y = 1 that hides the light from all of the ground; the camera looks
+/// under it from the side, standing in the light.
 Scene covered_ground();
 
 /// The same with a box of half a metre and the light a little to the side.

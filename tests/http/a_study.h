@@ -18,7 +18,7 @@ class AStudy : public RunningServer {
 
   json wait_until(const std::string& study_path, const std::string& status) {
     json body;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 3000; ++i) {
       body = body_of(researcher->Get(study_path), 200, "Study");
       if (body["status"] == status) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -31,6 +31,10 @@ class AStudy : public RunningServer {
     const auto result = researcher->Post(at + "/publish", "", "application/json");
     EXPECT_TRUE(result->status == 202 || result->status == 200) << result->body;
     return wait_until(at, "open");
+  }
+
+  json results_of_all() {
+    return body_of(researcher->Get(at + "/results.json"), 200, "Results")["included_sets"]["all"];
   }
 
   json enter(const json& body = json::object()) {

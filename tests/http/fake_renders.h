@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -32,6 +33,13 @@ class FakeRenders : public RenderService {
     submitters[record.id].push_back(who);
     if (records.contains(record.id) && records[record.id].status != "cancelled")
       return records[record.id];
+    if (request.value("measure", false)) {
+      const bool reference = request.at("technique") == "reference";
+      const double error = error_of(request);
+      record.cost = {{"frame_ms", {{"median", 100.0 - error}}}};
+      record.quality = {
+          {"reference_id", reference ? record.id : "another"}, {"rms_y", error}, {"ssim", nullptr}};
+    }
     record.status = scene == "slow" ? "queued" : scene == "broken" ? "failed" : "done";
     record.progress = record.status == "done" ? 1.0 : 0.0;
     record.device = {{"name", "fake"}, {"driver", "1"}, {"type", "cpu"}};
@@ -124,6 +132,8 @@ class FakeRenders : public RenderService {
   }
 
   int submitted = 0;
+  /// Error of a measured picture; its time is 100 ms less that many.
+  std::function<double(const nlohmann::json&)> error_of = [](const auto&) { return 1.0; };
   std::string in_trouble;  ///< why nothing can be drawn
 
   /// Those that have not released a render.

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "server/http/documents.h"
 #include "study/csv.h"
@@ -33,6 +34,53 @@ TEST_F(AStudy, ExportsARowPerRankedPicture) {
   EXPECT_EQ(results["participants"], 4);
   const auto counted = study();
   for (const auto& page : counted["scenes"]) EXPECT_EQ(page["answers"], 4);
+}
+
+TEST_F(AStudy, HoldsWhatWasMeasuredAgainstWhatWasSeen) {
+  publish();
+  answer_all(enter(), 1);
+  EXPECT_FALSE(results_of_all().contains("objective"));
+  EXPECT_EQ(study()["measures"]["pictures"], 0);
+
+  // The worse a picture was ranked, the larger its error and the shorter its time.
+  const auto rows = study::parse_responses(researcher->Get(at + "/responses.csv")->body);
+  const auto pages = study()["document"]["pages"];
+  std::map<std::pair<std::string, std::string>, double> ranks;
+  std::map<std::string, int> shown;
+  for (const auto& row : rows) {
+    ranks[{row.scene, row.preset}] = row.rank;
+    shown[row.scene] += row.technique == "reference" ? 0 : 1;
+  }
+  renders->error_of = [&](const json& request) {
+    return ranks[{request.at("scene"), request.at("technique")}];
+  };
+  body_of(researcher->Post(at + "/measure", "", "application/json"), 202, "Study");
+  json measures;
+  for (int i = 0; i < 500 && (measures.is_null() || measures["at_work"] == true); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    measures = study()["measures"];
+  }
+  EXPECT_EQ(measures["pictures"], measures["pictures_total"]);
+
+  const auto objective = results_of_all().at("objective");
+  EXPECT_EQ(objective.at("measures").size(), 2u);  // the null is no measure
+  for (const auto& scene : objective.at("measures").at("rms_y").at("scenes")) {
+    EXPECT_EQ(scene.at("n"), shown.at(scene.at("scene")));  // the reference is not among them
+    EXPECT_EQ(scene.at("spearman"), 1.0);
+  }
+  EXPECT_EQ(objective["measures"]["frame_ms_median"]["pooled_within_scenes"]["spearman"], -1.0);
+  EXPECT_FALSE(objective.at("pareto").empty());
+  std::set<std::string> figures;
+  const auto list = body_of(researcher->Get(at + "/figures"), 200, "FigureList")["figures"];
+  for (const auto& figure : list) figures.insert(figure["name"]);
+  EXPECT_TRUE(figures.contains("pareto")) << json(figures).dump();
+
+  // Nothing is measured twice.
+  const int submitted = renders->submitted;
+  body_of(researcher->Post(at + "/measure", "", "application/json"), 202, "Study");
+  for (int i = 0; i < 500 && study()["measures"]["at_work"] == true; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(renders->submitted, submitted);
 }
 
 /// Files of an archive by name.

@@ -59,8 +59,8 @@ struct Caught {
   double honest = 0.0;    ///< share of honest people who are
 };
 
-/// Six of 61 read the scale backwards (van Sambeek 2007, 6.3) and three rank at random, over `seeds`
-/// studies.
+/// Six of 61 read the scale backwards (van Sambeek 2007, 6.3) and three rank at random, over
+/// `seeds` studies.
 Caught catch_inverted(double step, std::uint64_t seeds) {
   const Study study = nine_pictures();
   const Preferences preferences = default_preferences(study, step);

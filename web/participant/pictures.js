@@ -57,14 +57,14 @@ export async function load_pictures(page, strings, progress) {
   return new Map(pairs);
 }
 
-let ahead = [];
+const ahead = [];  // held on to, so that the browser keeps them
 
 /// Fetches ahead of time, so that a page opens even where the network is gone by then. Whether that
 /// worked is found out when the page is shown.
 export function load_ahead(page) {
-  ahead = [...(page?.images ?? []), page?.reference].filter(Boolean).map(({ url }) => {
+  ahead.splice(0, ahead.length, ...[...(page?.images ?? []), page?.reference].filter(Boolean).map(({ url }) => {
     const image = new Image();
     image.src = url;
-    return image;  // held on to, so that the browser keeps it
-  });
+    return image;
+  }));
 }

@@ -83,8 +83,6 @@ function progress_of(study) {
   ];
 }
 
-/// True once people were let in: before that there is nothing to count or to export.
-
 class StudyView {
   constructor(study, signal) {
     Object.assign(this, { study, signal });
@@ -171,6 +169,15 @@ class StudyView {
     ];
   }
 
+  /// Offers to measure what was shown, and tells how far that is.
+  measuring() {
+    const { pictures, pictures_total: total, at_work } = this.study.measures;
+    if (!total || this.study.status === "publishing") return null;
+    if (pictures === total) return null;
+    if (at_work) return h("span", { class: "small", role: "status" }, `Measured ${pictures} of ${total} pictures`);
+    return this.action("Measure the pictures", () => post(this.version_path("/measure")));
+  }
+
   draw() {
     const { study } = this;
     const exported = (name, text) => h("a", { class: "quiet", href: this.version_path(`/${name}`), download: `${study.id}-${name}` }, text);
@@ -184,7 +191,7 @@ class StudyView {
       study.hash ? h("div", { class: "actions" },
         h("a", { class: "quiet", href: this.version_path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
         exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
-        exported("results.json", "Results (JSON)")) : null,
+        exported("results.json", "Results (JSON)"), this.measuring()) : null,
       study.hash ? this.figures : null,
     ].flat(Infinity).filter(Boolean));
     this.draw_results();
@@ -193,7 +200,7 @@ class StudyView {
   /// Fetched again only when somebody has answered since. While pictures are rendered there are none.
   async draw_results() {
     const { study } = this;
-    const stamp = JSON.stringify([study.hash, study.scenes, study.participants]);
+    const stamp = JSON.stringify([study.hash, study.scenes, study.participants, study.measures.pictures]);
     // A version that is being published has its hash, and no answers yet.
     if (!study.hash || study.status === "publishing" || stamp === this.drawn) return;
     this.drawn = stamp;
@@ -209,8 +216,9 @@ class StudyView {
   async follow() {
     if (this.following) return;
     this.following = true;
-    while (!this.signal.aborted && poll_ms[this.study.status]) {
-      await sleep(poll_ms[this.study.status]);
+    const pause_ms = () => (this.study.measures.at_work ? poll_ms.publishing : poll_ms[this.study.status]);
+    while (!this.signal.aborted && pause_ms()) {
+      await sleep(pause_ms());
       if (this.signal.aborted) return;
       try {
         const before = JSON.stringify(this.study);

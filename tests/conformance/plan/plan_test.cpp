@@ -252,7 +252,8 @@ TEST(DepthRange, spares_maps_of_few_bits_the_depth_that_nothing_needs) {
     return metrics::visibility_error(result.visibility, exact.visibility, result.judged)
         .missing_shadow;
   };
-  // Over the whole depth a step would be half a metre, and the box, half a metre high, cast nothing.
+  // Over the whole depth a step would be half a metre, and the box, half a metre high, cast
+  // nothing.
   EXPECT_LT(missing(), 0.001);
   // Without this rule the scene's frame spares them: maps look no farther than its reach.
   request.rules.depth_range = false;
