@@ -85,6 +85,22 @@ Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
   return as_rgba(picture_formats().decode(format, bytes, most_bytes));
 }
 
+Image8 decode_shown(std::string_view bytes, std::uint64_t most_bytes, std::uint8_t surround) {
+  const bool webp =
+      bytes.size() > 12 && bytes.substr(0, 4) == "RIFF" && bytes.substr(8, 4) == "WEBP";
+  const std::string format = webp ? ".webp" : format_of(bytes);
+  if (format == ".tif") throw unreadable("the picture is neither PNG nor JPEG nor WebP");
+  Image8 picture = as_rgba(picture_formats().decode_upright(format, bytes, most_bytes));
+  for (std::size_t i = 0; i < picture.pixels.size(); i += 4) {
+    const int alpha = picture.pixels[i + 3];
+    for (std::size_t c = i; c < i + 3; ++c)
+      picture.pixels[c] = static_cast<std::uint8_t>(
+          (picture.pixels[c] * alpha + surround * (255 - alpha) + 127) / 255);
+    picture.pixels[i + 3] = 255;
+  }
+  return picture;
+}
+
 ImageF decode_levels(std::string_view bytes, bool& fractions) {
   const std::string format = format_of(bytes);
   if (format == ".png") {

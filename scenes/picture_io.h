@@ -33,6 +33,10 @@ void write_picture(const std::filesystem::path& file, const ImageF& picture,
 /// `most_bytes` bytes of result.
 Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes = std::uint64_t{1} << 29);
 
+/// PNG, JPEG or WebP as a browser shows it: turned as its EXIF says, 4 channels, 8 bits. What is
+/// transparent lies over `surround`, so that every pixel is opaque. Limits as decode_picture.
+Image8 decode_shown(std::string_view bytes, std::uint64_t most_bytes, std::uint8_t surround);
+
 /// As decode_picture; throws not_found where there is no such file, unreadable naming the file.
 Image8 read_picture(const std::filesystem::path& file);
 

@@ -22,6 +22,7 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
     row.scene = page.id;
     row.technique = picture.id;
     row.preset = picture.technique;
+    row.own_picture = picture.own;
     row.parameters_hash = picture.parameters_hash;
     row.slot = static_cast<int>(slot);
     row.rank = ranks.at(slot) / 2.0;

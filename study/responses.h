@@ -29,7 +29,8 @@ struct ResponseRow {
   int repeat = 0;           ///< 0 first showing, 1 second
   std::string scene;        ///< the page's id, which is the scene's unless the study says otherwise
   std::string technique;    ///< the picture's id in the study
-  std::string preset;       ///< technique or preset that was rendered
+  std::string preset;       ///< technique or preset that was rendered; empty for one's own picture
+  std::string own_picture;  ///< SHA-256 of the picture that was uploaded; empty for renders
   std::string parameters_hash;
   std::optional<int> slot;  ///< position on the page, from 0
   double rank = 0.0;        ///< rank_1_is_most_realistic, mid-rank where equal

@@ -54,30 +54,33 @@ std::string parameters_hash(const json& parameters) {
   return text;
 }
 
-Picture read_picture(const json& value) {
+Picture read_picture(const json& value, const std::string& path) {
+  const json& keys = value.is_object() ? value : json{{"technique", value}};
   Picture picture;
-  if (value.is_string()) {
-    picture.technique = value.get<std::string>();
-  } else {
-    picture.technique = value.at("technique").get<std::string>();
-    picture.parameters = value.value("parameters", json::object());
-  }
-  const json& keys = value.is_object() ? value : json::object();
+  picture.technique = keys.value("technique", "");
+  picture.own = keys.value("picture", "");
+  if (picture.technique.empty() == picture.own.empty())
+    throw bad_value(path, "needs either `technique` or, for a picture of your own, `picture`");
+  if (!picture.own.empty() && !is_picture_name(picture.own))
+    throw bad_value(path + ".picture",
+                    "must be the SHA-256 that uploading the picture returned, or in a zip the name "
+                    "of a file beside study.json");
+  if (!picture.own.empty() && keys.contains("parameters"))
+    throw bad_value(path + ".parameters", "a picture of your own has none");
+  if (!picture.own.empty() && !keys.contains("id"))
+    throw bad_value(path + ".id", "a picture of your own needs a name");
+  picture.parameters = keys.value("parameters", json::object());
   picture.id = keys.value("id", picture.technique);
   picture.label = keys.value("label", picture.id);
   picture.parameters_hash = parameters_hash(picture.parameters);
   return picture;
 }
 
-Picture reference_picture() {
-  return read_picture({{"technique", "reference"}, {"label", "REF"}});
-}
-
 std::vector<Picture> read_pictures(const json& list, const std::string& path) {
   std::vector<Picture> pictures;
   std::set<std::string> ids;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    pictures.push_back(read_picture(list[i]));
+    pictures.push_back(read_picture(list[i], indexed(path, i)));
     if (!ids.insert(pictures.back().id).second) {
       throw bad_value(indexed(path, i), "two pictures are called `" + pictures.back().id +
                                             "`; give one of them another id");
@@ -280,19 +283,6 @@ void read_texts(const json& document, const TextReader& texts, Study& study) {
   }
 }
 
-json render_body(const Study& study, const Page& page, const Picture& picture) {
-  json body = {{"scene", page.scene},
-               {"technique", picture.technique},
-               {"parameters", picture.parameters},
-               {"width", study.picture.width},
-               {"height", study.picture.height},
-               {"supersampling", study.picture.supersampling},
-               {"light_samples", study.picture.light_samples},
-               {"seed", study.picture.seed}};
-  if (!page.camera.empty()) body["camera"] = page.camera;
-  return body;
-}
-
 }  // namespace
 
 Study parse_study(const json& document) {
@@ -335,35 +325,12 @@ Study parse_study(const std::string& text) {
   return parse_study(document);
 }
 
+Picture reference_picture() {
+  return read_picture({{"technique", "reference"}, {"label", "REF"}}, "reference");
+}
+
 std::string study_hash(const Study& study) {
   return sha256(study.document.dump());
-}
-
-PageRenders page_renders(const Study& study, const Page& page) {
-  PageRenders renders;
-  for (const Picture& picture : page.pictures) {
-    renders.pictures.push_back(render_body(study, page, picture));
-  }
-  if (page.reference == ReferenceUse::shown || page.reference == ReferenceUse::both) {
-    renders.shown_reference = render_body(study, page, reference_picture());
-  }
-  return renders;
-}
-
-std::vector<json> all_renders(const Study& study) {
-  std::vector<json> renders;
-  std::set<std::string> seen;
-  const auto add = [&](const json& body) {
-    if (seen.insert(body.dump()).second) renders.push_back(body);
-  };
-  const auto add_page = [&](const Page& page) {
-    const PageRenders of_page = page_renders(study, page);
-    for (const json& body : of_page.pictures) add(body);
-    if (of_page.shown_reference) add(*of_page.shown_reference);
-  };
-  if (study.practice) add_page(study.practice->page);
-  for (const Page& page : study.pages) add_page(page);
-  return renders;
 }
 
 json welcome_document(const Study& study) {

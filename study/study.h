@@ -20,10 +20,11 @@ enum class Widget { shelves, numeric };
 /// beside them and marked, or both.
 enum class ReferenceUse { none, hidden, shown, both };
 
-/// A picture to rank.
+/// A picture to rank: rendered, or one of the researcher's own.
 struct Picture {
   std::string id;         ///< name in exports, unique on its page; the technique's unless given
   std::string technique;  ///< technique or preset, as the render service resolves it
+  std::string own;        ///< instead of a technique: SHA-256 of a picture that was uploaded
   nlohmann::json parameters = nlohmann::json::object();  ///< override the preset's
   std::string label;            ///< abbreviation in tables, the id unless given
   std::string parameters_hash;  ///< of the parameters' canonical text
@@ -181,13 +182,22 @@ Study parse_study(const std::string& text);
 /// with the same meaning but other blanks or key order have the same hash.
 std::string study_hash(const Study& study);
 
+/// The reference as a picture of a page.
+Picture reference_picture();
+
 /// Bodies of POST /api/v1/renders for one page: pictures[i] in the page's order, and the reference
-/// where the page shows it.
+/// where the page shows it. One's own picture is {"picture": its SHA-256} instead.
 struct PageRenders {
   std::vector<nlohmann::json> pictures;
   std::optional<nlohmann::json> shown_reference;
 };
 PageRenders page_renders(const Study& study, const Page& page);
+
+/// The SHA-256 of one's own picture; empty where the request is a render's.
+std::string own_picture(const nlohmann::json& request);
+
+/// Whether a text can be the name of a picture that was uploaded: a SHA-256 in hexadecimal digits.
+bool is_picture_name(const std::string& text);
 
 /// Every distinct render body that the study needs, practice page included, in order of pages.
 std::vector<nlohmann::json> all_renders(const Study& study);

@@ -1,5 +1,7 @@
 // libpenumbra_formats.so: what is not PNG of 8 bits.
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -69,6 +71,20 @@ Image<T> read_pixels(const OpenedInput& opened, TypeDesc type) {
   return picture;
 }
 
+/// The pixels as they are to be looked at: `orientation` is EXIF's, 1 to 8.
+Image8 turned(Image8& picture, int orientation) {
+  const ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height),
+                       static_cast<int>(picture.channels), TypeDesc::UINT8);
+  OIIO::ImageBuf stored(spec, picture.pixels.data());
+  stored.set_orientation(orientation);
+  const OIIO::ImageBuf upright = OIIO::ImageBufAlgo::reorient(stored);
+  Image8 result(static_cast<std::uint32_t>(upright.spec().width),
+                static_cast<std::uint32_t>(upright.spec().height), picture.channels);
+  if (!upright.get_pixels(upright.roi(), TypeDesc::UINT8, result.pixels.data()))
+    throw unreadable("the picture cannot be turned: " + upright.geterror());
+  return result;
+}
+
 class Formats : public PictureFormats {
  public:
   std::string encode(const std::string& extension, const Image8& picture) const override {
@@ -101,6 +117,14 @@ class Formats : public PictureFormats {
   Image8 decode(const std::string& extension, std::string_view bytes,
                 std::uint64_t most_bytes) const override {
     return read_pixels<std::uint8_t>(opened(extension, bytes, most_bytes), TypeDesc::UINT8);
+  }
+
+  Image8 decode_upright(const std::string& extension, std::string_view bytes,
+                        std::uint64_t most_bytes) const override {
+    const OpenedInput input = opened(extension, bytes, most_bytes);
+    auto picture = read_pixels<std::uint8_t>(input, TypeDesc::UINT8);
+    const int orientation = input.input->spec().get_int_attribute("Orientation", 1);
+    return orientation > 1 && orientation <= 8 ? turned(picture, orientation) : picture;
   }
 
   ImageF decode_levels(const std::string& extension, std::string_view bytes,

@@ -25,6 +25,9 @@ class PictureFormats {
   /// As picture_io.h has it, of the format that the extension stands for.
   virtual Image8 decode(const std::string& extension, std::string_view bytes,
                         std::uint64_t most_bytes) const = 0;
+  /// Turned as its EXIF says; .png, .jpg or .webp.
+  virtual Image8 decode_upright(const std::string& extension, std::string_view bytes,
+                                std::uint64_t most_bytes) const = 0;
   virtual ImageF decode_levels(const std::string& extension, std::string_view bytes,
                                bool& fractions) const = 0;
   virtual ImageF decode_exr(std::string_view bytes, std::vector<std::string>* channels) const = 0;

@@ -62,6 +62,8 @@ void add_worker(CLI::App& app, Session& session) {
                      "Address space that drawing may add, bytes; 0: the machine's memory");
   worker->add_option("--read-scene", options->read_scene,
                      "Only read this scene file and say what it is");
+  worker->add_option("--read-picture", options->read_picture,
+                     "Only read this picture and write it as PNG");
   worker->add_option("--checkpoint-s", options->checkpoint_s,
                      "Least time between two checkpoints of a picture, seconds");
   worker->add_flag("--validation", options->validation, "Turn Vulkan's validation layer on");

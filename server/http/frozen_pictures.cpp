@@ -56,6 +56,10 @@ std::optional<std::string> FrozenPictures::read_file(const std::string& digest) 
   return bytes;
 }
 
+std::optional<std::string> FrozenPictures::read_stored(const std::string& digest) {
+  return signature_of(digest) ? read_file(digest) : std::nullopt;
+}
+
 std::string FrozenPictures::freeze(const std::string& png) {
   auto digest = sha256(png);
   if (signature_of(digest) && read_file(digest)) return digest;
@@ -65,10 +69,17 @@ std::string FrozenPictures::freeze(const std::string& png) {
   return digest;
 }
 
+SharedBytes FrozenPictures::source_of(const std::string& render) {
+  // One's own picture is kept as it was uploaded, under its name.
+  if (!signature_of(render)) return renders.artefact(render, "image.png");
+  const auto bytes = read_stored(render);
+  return bytes ? std::make_shared<const std::string>(*bytes) : nullptr;
+}
+
 std::optional<std::string> FrozenPictures::redraw(const std::string& digest) {
   for (const auto& render : studies.renders_of_picture(digest)) {
     try {
-      const auto png = renders.artefact(render, "image.png");
+      const auto png = source_of(render);
       if (!png) continue;
       // Studies opened before pictures were packed tightly hold them as they were drawn.
       for (auto& pixels : {packed_tightly(*png), pixels_only(*png)})
@@ -94,7 +105,7 @@ std::string FrozenPictures::read(const std::string& digest) {
   return *std::move(bytes);
 }
 
-std::string FrozenPictures::read_webp(const std::string& digest) {
+std::optional<std::string> FrozenPictures::read_webp(const std::string& digest) {
   const auto file = webp_folder / (digest + ".webp");
   // The file begins with the SHA-256 of its picture's name and of what follows.
   const auto seal_of = [&](std::string_view webp) { return sha256(digest + std::string(webp)); };
@@ -104,8 +115,9 @@ std::string FrozenPictures::read_webp(const std::string& digest) {
     spdlog::error("the WebP of the picture {} is altered, and is made again", digest);
   }
   auto webp = lossless_webp(read(digest));
+  if (!webp) return std::nullopt;
   try {
-    storage::write_file_durably(file, seal_of(webp) + webp);
+    storage::write_file_durably(file, seal_of(*webp) + *webp);
   } catch (const Error& error) {
     spdlog::error("the WebP of the picture {} cannot be kept: {}", digest, error.what());
   }

@@ -32,11 +32,14 @@ class FrozenPictures {
 
   /// The same pixels as lossless WebP, for browsers that take it. They are computed once and kept
   /// under a seal of their own; where that does not fit, they are computed from the PNG again.
-  /// Throws as read.
-  std::string read_webp(const std::string& digest);
+  /// Empty where WebP cannot hold a picture so large. Throws as read.
+  std::optional<std::string> read_webp(const std::string& digest);
 
   /// The file's bytes if they have the digest; no look at renders.
   std::optional<std::string> read_file(const std::string& digest);
+
+  /// The same; a name that no file has is no damage.
+  std::optional<std::string> read_stored(const std::string& digest);
 
   /// Reads the pictures of all open studies; those whose file did not change since it was last read
   /// are taken as they were.
@@ -50,6 +53,7 @@ class FrozenPictures {
 
   std::filesystem::path file_of(const std::string& digest) const;
   std::optional<Signature> signature_of(const std::string& digest) const;
+  SharedBytes source_of(const std::string& render);
   std::optional<std::string> redraw(const std::string& digest);
 
   storage::Studies& studies;

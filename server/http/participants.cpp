@@ -65,6 +65,7 @@ void put_answer(Call& call) {
 
 /// A picture of a draft, drawn for a researcher who looks at it; publishing finds it in the cache.
 std::string drawn(Service& service, const json& request) {
+  if (const auto own = study::own_picture(request); !own.empty()) return service.pictures.read(own);
   const auto record = service.renders->submit(request);
   const auto over = service.renders->wait(record.id, service.options.render_deadline_s);
   if (!over || !is_over(*over)) throw Error("deadline", "the picture was not ready in time");
@@ -100,10 +101,13 @@ void get_picture(Call& call) {
   }
   if (digest.empty()) throw nothing_here();
   const bool draft = person.test && digest == lost_picture;
-  const bool webp = !draft && takes_webp(call.request.get_header_value("Accept"));
   auto& pictures = call.service.pictures;
+  // All pictures of a study have one size, so that those too large for WebP tell nothing either.
+  const auto webp = !draft && takes_webp(call.request.get_header_value("Accept"))
+                        ? pictures.read_webp(digest)
+                        : std::nullopt;
   const auto bytes = draft  ? drawn(call.service, render_request(*frozen, planned, number))
-                     : webp ? pictures.read_webp(digest)
+                     : webp ? *webp
                             : pictures.read(digest);
   call.response.status = 200;
   call.response.set_header("Vary", "Accept");

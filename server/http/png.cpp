@@ -20,6 +20,14 @@ struct Chunk {
   std::string_view whole;  ///< with length, type and checksum
 };
 
+/// Four bytes, the highest first.
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t number = 0;
+  for (const char byte : bytes.substr(at, 4))
+    number = number << 8 | static_cast<unsigned char>(byte);
+  return number;
+}
+
 /// The chunks that pixels depend on, in order, from IHDR to IEND.
 std::vector<Chunk> chunks_of_pixels(std::string_view png) {
   constexpr std::array<std::string_view, 5> kept{"IHDR", "PLTE", "tRNS", "IDAT", "IEND"};
@@ -28,9 +36,7 @@ std::vector<Chunk> chunks_of_pixels(std::string_view png) {
   std::vector<Chunk> chunks;
   for (std::size_t at = signature.size(); at < png.size();) {
     if (png.size() - at < frame) throw unreadable("the PNG ends inside a chunk");
-    std::uint32_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      length = length << 8 | static_cast<unsigned char>(png[at + i]);
+    const std::uint32_t length = number_at(png, at);
     if (length > png.size() - at - frame) throw unreadable("the PNG ends inside a chunk");
     const auto type = png.substr(at + 4, 4);
     if (std::find(kept.begin(), kept.end(), type) != kept.end())
@@ -86,6 +92,13 @@ std::string pixels_only(std::string_view png) {
   std::string result(signature);
   for (const auto& chunk : chunks_of_pixels(png)) result += chunk.whole;
   return result;
+}
+
+std::pair<std::uint32_t, std::uint32_t> size_of_png(std::string_view png) {
+  const auto chunks = chunks_of_pixels(png);
+  if (chunks.front().type != "IHDR" || chunks.front().data.size() < 8)
+    throw unreadable("the PNG has no size");
+  return {number_at(chunks.front().data, 0), number_at(chunks.front().data, 4)};
 }
 
 std::string packed_tightly(std::string_view png) {

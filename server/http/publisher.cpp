@@ -106,9 +106,15 @@ void Publisher::run(const storage::StudyRecord& record) {
   try {
     const auto study = study::parse_study(record.document);
     const auto all = study::all_renders(study);
+    for (const auto& request : all)  // all workers have something to do
+      if (study::own_picture(request).empty()) submit(request, publisher_of(record));
     for (const auto& request : all)
-      submit(request, publisher_of(record));  // all workers have something to do
-    for (const auto& request : all) insist(name, [&] { render_one(record, request); });
+      insist(name, [&] {
+        if (study::own_picture(request).empty())
+          render_one(record, request);
+        else
+          freeze_own(record, request);
+      });
     insist(name, [&] {
       for (const auto& [request, picture] : studies.pictures(record.id, record.version))
         pictures.read(picture.digest);
@@ -157,10 +163,23 @@ void Publisher::render_one(const storage::StudyRecord& record, const nlohmann::j
   const auto render = finished(request, publisher_of(record));
   const auto png = renders.artefact(render.id, "image.png");
   if (!png) throw Error("storage", "the picture of " + render.id + " is gone");
-  const auto digest = pictures.freeze(packed_tightly(*png));
+  freeze(record, request, render.id, *png, measures_of(render));
+}
+
+void Publisher::freeze_own(const storage::StudyRecord& record, const nlohmann::json& request) {
+  const auto name = study::own_picture(request);
+  const auto png = pictures.read_stored(name);
+  if (!png) throw not_found("picture", "the picture " + name + " is not here; upload it again");
+  freeze(record, request, name, *png, nlohmann::json::object());
+}
+
+void Publisher::freeze(const storage::StudyRecord& record, const nlohmann::json& request,
+                       const std::string& source, const std::string& png,
+                       const nlohmann::json& measures) {
+  const auto digest = pictures.freeze(packed_tightly(png));
   pictures.read_webp(digest);  // made now, so that no participant waits for it
   studies.count_picture(record.id, record.version, request_key(request),
-                        {render.id, digest, measures_of(render)});
+                        {source, digest, measures});
 }
 
 void Publisher::run_measurement(const storage::StudyRecord& record) {

@@ -58,6 +58,9 @@ class Publisher {
   void insist(const std::string& doing, const std::function<void()>& step);
   void run(const storage::StudyRecord& record);
   void run_measurement(const storage::StudyRecord& record);
+  void freeze(const storage::StudyRecord& record, const nlohmann::json& request,
+              const std::string& source, const std::string& png, const nlohmann::json& measures);
+  void freeze_own(const storage::StudyRecord& record, const nlohmann::json& request);
   void render_one(const storage::StudyRecord& record, const nlohmann::json& request);
   /// Asks until a render could be taken in.
   RenderRecord submit(const nlohmann::json& request, const Submitter& who);

@@ -96,6 +96,7 @@ const std::vector<Route>& routes() {
     add_sweep_routes(all);
     add_experiment_routes(all);
     add_study_routes(all);
+    add_picture_routes(all);
     add_export_routes(all);
     add_qr_code_routes(all);
     add_people_routes(all);

@@ -54,6 +54,7 @@ void add_image_routes(std::vector<Route>& table);
 void add_sweep_routes(std::vector<Route>& table);
 void add_experiment_routes(std::vector<Route>& table);
 void add_study_routes(std::vector<Route>& table);
+void add_picture_routes(std::vector<Route>& table);
 void add_export_routes(std::vector<Route>& table);
 void add_qr_code_routes(std::vector<Route>& table);
 void add_people_routes(std::vector<Route>& table);

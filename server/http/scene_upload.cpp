@@ -28,18 +28,6 @@ constexpr zip_uint64_t most_bytes = 512u << 20;
 constexpr zip_uint64_t largest_ratio = 200;   // of bytes unpacked to packed; deflate ends near 1000
 constexpr zip_uint64_t small_file = 1 << 20;  // below this the ratio does no harm
 
-/// A folder that is gone at the end of its block.
-struct Staging {
-  fs::path path;
-  explicit Staging(const fs::path& data) : path(data / storage::incoming_name / random_uuid()) {
-    fs::create_directories(path);
-  }
-  ~Staging() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
-
 struct Archive {
   zip_t* handle;
   ~Archive() {
@@ -140,7 +128,7 @@ const char* file_name_of(const std::string& bytes) {
 }
 
 fs::path write_upload(const fs::path& folder, const std::string& bytes) {
-  if (bytes.starts_with("PK\x03\x04")) {
+  if (is_zip(bytes)) {
     unpack(bytes, folder);
     return main_file(folder);
   }
@@ -196,6 +184,19 @@ void check_scene_id(const std::string& id) {
     throw bad_value("id", "must be 1 to 64 of a-z, 0-9, - and _, beginning with a letter or digit");
 }
 
+Staging::Staging(const fs::path& data) : path(data / storage::incoming_name / random_uuid()) {
+  fs::create_directories(path);
+}
+
+Staging::~Staging() {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+}
+
+bool is_zip(const std::string& bytes) {
+  return bytes.starts_with("PK\x03\x04");
+}
+
 void unpack(const std::string& bytes, const fs::path& folder) {
   zip_error_t failure;
   zip_error_init(&failure);
@@ -226,7 +227,7 @@ void unpack(const std::string& bytes, const fs::path& folder) {
     if (name.ends_with(".zip")) throw unreadable("the archive holds an archive", "body");
     if (stat.size > small_file &&
         stat.size / std::max<zip_uint64_t>(stat.comp_size, 1) > largest_ratio)
-      throw unreadable("the archive is packed too tightly to be a scene: " + name, "body");
+      throw unreadable("the archive is packed too tightly: " + name, "body");
     if (stat.size > most_bytes - total)
       throw unreadable("the archive holds more than " + std::to_string(most_bytes) + " bytes",
                        "body");

@@ -23,6 +23,23 @@ nlohmann::json store_scene(const std::filesystem::path& data, const std::string&
 /// False where there is no such scene.
 bool remove_scene(const std::filesystem::path& data, const std::string& id);
 
+/// A folder for what is uploaded, gone at the end of its block.
+struct Staging {
+  explicit Staging(const std::filesystem::path& data);
+  ~Staging();
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  std::filesystem::path path;
+};
+
+/// Largest upload of a scene, a picture or a study with pictures, bytes; nginx's limit in deploy/
+/// is the same.
+inline constexpr std::size_t largest_upload = 256u << 20;
+
+/// Told by the first bytes.
+bool is_zip(const std::string& bytes);
+
 /// Unpacks a zip of regular files into a folder. Throws unreadable for names that lead outside, for
 /// links, names that come twice, archives inside, more than 1000 files, over 512 MiB, or over 200
 /// bytes from one.

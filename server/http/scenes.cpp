@@ -10,8 +10,6 @@
 namespace penumbra::server::http {
 namespace {
 
-constexpr std::size_t largest_scene = 256u << 20;  // bytes; nginx's limit in deploy/ is the same
-
 bool is_built_in(const std::string& id) {
   for (const auto& scene : scenes::built_in())
     if (scene.id == id) return true;
@@ -60,7 +58,7 @@ void delete_scene(Call& call) {
 void add_scene_routes(std::vector<Route>& table) {
   table.push_back({"GET", "/api/v1/scenes", Access::laboratory, list_scenes});
   table.push_back({"GET", "/api/v1/scenes/{id}", Access::laboratory, get_scene});
-  table.push_back({"PUT", "/api/v1/scenes/{id}", Access::researcher, put_scene, largest_scene});
+  table.push_back({"PUT", "/api/v1/scenes/{id}", Access::researcher, put_scene, largest_upload});
   table.push_back({"DELETE", "/api/v1/scenes/{id}", Access::researcher, delete_scene});
 }
 

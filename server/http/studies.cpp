@@ -3,7 +3,10 @@
 #include "scenes/json_text.h"
 #include "server/http/body.h"
 #include "server/http/clock.h"
+#include "server/http/own_pictures.h"
+#include "server/http/png.h"
 #include "server/http/reply.h"
+#include "server/http/scene_upload.h"
 #include "server/http/secrets.h"
 #include "server/http/service.h"
 #include "study/enrolment.h"
@@ -156,13 +159,32 @@ std::string picture_path(const study::Study& study, const std::string& page,
   return (own ? page + "." : "") + "techniques[" + std::to_string(picture) + "]";
 }
 
+/// Checks that one's own picture is here, and no larger or smaller than those beside it: its size
+/// would tell it from them.
+void check_own_picture(Service& service, const study::Study& study, const std::string& name,
+                       const std::string& path, study::FaultList& faults) {
+  const auto png = service.pictures.read_stored(name);
+  if (!png)
+    return faults.add(bad_value(path + ".picture", "no such picture was uploaded to this server"));
+  const auto [width, height] = size_of_png(*png);
+  const auto text = [](auto w, auto h) { return std::to_string(w) + " by " + std::to_string(h); };
+  if (width != study.picture.width || height != study.picture.height)
+    faults.add(bad_value(path + ".picture", "has " + text(width, height) +
+                                                " pixels; the study's pictures (`picture`) have " +
+                                                text(study.picture.width, study.picture.height)));
+}
+
 /// Asks for every picture of a page whether it could be drawn.
-void check_pictures(RenderService& renders, const study::Study& study, const study::Page& page,
+void check_pictures(Service& service, const study::Study& study, const study::Page& page,
                     const std::string& path, const json& document, study::FaultList& faults) {
   const auto requests = study::page_renders(study, page).pictures;
   for (std::size_t i = 0; i < requests.size(); ++i) {
+    if (const auto own = study::own_picture(requests[i]); !own.empty()) {
+      check_own_picture(service, study, own, picture_path(study, path, document, i), faults);
+      continue;
+    }
     try {
-      renders.check(requests[i]);
+      service.renders->check(requests[i]);
     } catch (const Error& error) {
       if (error.code != "bad_value" && error.code != "not_found" && error.code != "unsupported")
         throw;
@@ -180,15 +202,18 @@ void check_pictures(RenderService& renders, const study::Study& study, const stu
 
 /// Everything that is wrong with a study, its scenes, cameras, techniques and parameters included.
 study::Study checked_study(Call& call) {
-  auto study = study::parse_study(call.json());
+  if (!is_zip(call.body) && call.body.size() > largest_study)
+    throw Error("too_large", "at most " + std::to_string(largest_study) + " bytes", "body");
+  auto study =
+      study::parse_study(is_zip(call.body) ? study_of_zip(call.service, call.body) : call.json());
   study::FaultList faults;
   const auto& document = study.document;
   for (std::size_t i = 0; i < study.pages.size(); ++i)
-    check_pictures(*call.service.renders, study, study.pages[i], "pages[" + std::to_string(i) + "]",
+    check_pictures(call.service, study, study.pages[i], "pages[" + std::to_string(i) + "]",
                    document.at("pages")[i], faults);
   if (study.practice)
-    check_pictures(*call.service.renders, study, study.practice->page, "practice",
-                   document.at("practice"), faults);
+    check_pictures(call.service, study, study.practice->page, "practice", document.at("practice"),
+                   faults);
   faults.throw_if_any();
   return study;
 }
@@ -284,9 +309,8 @@ std::shared_ptr<const FrozenStudy> published_at(Call& call) {
 void add_study_routes(std::vector<Route>& table) {
   const std::string all = "/api/v1/studies";
   const std::string one = all + "/{id}";
-  constexpr std::size_t study_document = 4 << 20;
   table.push_back({"GET", all, Access::researcher, list_studies});
-  table.push_back({"POST", all, Access::researcher, post_study, study_document});
+  table.push_back({"POST", all, Access::researcher, post_study, largest_upload});
   table.push_back({"GET", one, Access::researcher, get_study});
   table.push_back({"POST", one + "/publish", Access::researcher, publish_study});
   table.push_back({"POST", one + "/measure", Access::researcher, measure_study});

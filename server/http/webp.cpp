@@ -8,6 +8,7 @@
 
 #include "renderer/error.h"
 #include "scenes/picture_io.h"
+#include "server/http/png.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -36,7 +37,9 @@ bool any_part(std::string_view text, char separator, const Visit& visit) {
 
 }  // namespace
 
-std::string lossless_webp(std::string_view png) {
+std::optional<std::string> lossless_webp(std::string_view png) {
+  const auto [width, height] = size_of_png(png);
+  if (std::max(width, height) > WEBP_MAX_DIMENSION) return std::nullopt;
   const Image8 rgba = scenes::decode_picture(png);
   WebPConfig config;
   WebPPicture picture;
@@ -57,7 +60,7 @@ std::string lossless_webp(std::string_view png) {
   if (WebPPictureImportRGBA(&picture, rgba.pixels.data(), 4 * picture.width) == 0 ||
       WebPEncode(&config, &picture) == 0)
     throw unreadable("the picture cannot be packed as WebP");
-  return {reinterpret_cast<const char*>(memory.mem), memory.size};
+  return std::string(reinterpret_cast<const char*>(memory.mem), memory.size);
 }
 
 bool takes_webp(std::string_view accept) {

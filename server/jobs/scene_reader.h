@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/message.h"
+
 namespace penumbra::server {
 
 struct SceneReaderOptions {
@@ -17,8 +19,18 @@ struct SceneReaderOptions {
   double deadline_s = 60.0;
 };
 
-/// Reads a scene's file for good in a process of its own, so that what a file does to its reader, a
-/// fault, endless work, all memory, costs that file. Few run at once. Thread-safe.
+/// A picture that was uploaded, as it is shown.
+struct UploadedPicture {
+  std::string png;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+/// Pixels of an uploaded picture at most: a photograph of 16 megapixels.
+inline constexpr std::uint64_t most_uploaded_pixels = 1u << 24;
+
+/// Reads an uploaded file for good in a process of its own, so that what a file does to its reader,
+/// a fault, endless work, all memory, costs that file. Few run at once. Thread-safe.
 class SceneReader {
  public:
   explicit SceneReader(SceneReaderOptions options);
@@ -28,9 +40,16 @@ class SceneReader {
   /// where others are read for as long, `draining` where it was stopped.
   nlohmann::json read(const std::filesystem::path& file, const std::function<bool()>& stopping);
 
+  /// A PNG, JPEG or WebP of at most `most_uploaded_pixels`; throws as `read`.
+  UploadedPicture read_picture(const std::filesystem::path& file,
+                               const std::function<bool()>& stopping);
+
   nlohmann::json statistics() const;
 
  private:
+  Message read_with(const char* option, const std::filesystem::path& file,
+                    const std::function<bool()>& stopping);
+
   static constexpr int most_at_once = 2;
 
   SceneReaderOptions options_;
@@ -41,5 +60,8 @@ class SceneReader {
 /// What the process does: reads the file, writes {"scene"} or {"error"} to standard output as a
 /// message (message.h).
 int run_scene_reader(const std::filesystem::path& file, std::uint64_t memory_limit);
+
+/// The same for a picture: {"picture": {"width", "height"}} and the PNG, or {"error"}.
+int run_picture_reader(const std::filesystem::path& file, std::uint64_t memory_limit);
 
 }  // namespace penumbra::server

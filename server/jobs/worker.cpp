@@ -147,6 +147,8 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
 
 int run_worker(const WorkerOptions& options) {
   if (!options.read_scene.empty()) return run_scene_reader(options.read_scene, memory_of(options));
+  if (!options.read_picture.empty())
+    return run_picture_reader(options.read_picture, memory_of(options));
   // A worker never outlives who asked for it.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);

@@ -17,6 +17,8 @@ struct WorkerOptions {
   std::uint64_t memory_limit = 0;
   /// Only read this scene file and say what it is (scene_reader.h); no device is opened.
   std::filesystem::path read_scene;
+  /// The same for a picture, which is written as PNG.
+  std::filesystem::path read_picture;
   double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
 };
 

@@ -29,7 +29,7 @@ struct StudyRecord {
 
 /// A picture frozen with a version.
 struct FrozenPicture {
-  std::string render;       ///< id of the render
+  std::string render;       ///< its id, or SHA-256 of one's own picture as it was uploaded
   std::string digest;       ///< SHA-256 of the PNG
   nlohmann::json measures;  ///< {name: number} of the render; null until it was measured
 };

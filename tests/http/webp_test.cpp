@@ -31,7 +31,7 @@ Image8 some_picture(bool transparent) {
 TEST(LosslessWebP, DecodesToThePixelsOfThePng) {
   for (const bool transparent : {false, true}) {
     const auto picture = some_picture(transparent);
-    const auto webp = lossless_webp(scenes::encode_png(picture));
+    const auto webp = lossless_webp(scenes::encode_png(picture)).value();
     int width = 0;
     int height = 0;
     std::uint8_t* pixels = WebPDecodeRGBA(reinterpret_cast<const std::uint8_t*>(webp.data()),
@@ -45,7 +45,7 @@ TEST(LosslessWebP, DecodesToThePixelsOfThePng) {
 }
 
 TEST(LosslessWebP, HoldsNothingButPixels) {
-  const auto webp = lossless_webp(grey_png(100, "secret technique"));
+  const auto webp = lossless_webp(grey_png(100, "secret technique")).value();
   EXPECT_EQ(webp, lossless_webp(grey_png(100, "another")));
   // One chunk that fills the file (WebP Container Specification): no EXIF, XMP or profile.
   ASSERT_EQ(webp.substr(0, 4) + webp.substr(8, 8), "RIFFWEBPVP8L");
@@ -53,6 +53,19 @@ TEST(LosslessWebP, HoldsNothingButPixels) {
   for (std::size_t i = 4; i > 0; --i)
     length = length << 8 | static_cast<unsigned char>(webp[15 + i]);
   EXPECT_EQ(webp.size(), 20 + length + length % 2);
+}
+
+/// 14 bits hold width and height less one (WebP Lossless Bitstream, 3), and libwebp takes one less.
+TEST(LosslessWebP, IsLeftOutWhereTheFormatCannotHoldThePicture) {
+  for (const auto& [width, height] : {std::pair{16384u, 1u}, {1u, 16384u}})
+    EXPECT_FALSE(lossless_webp(scenes::encode_png(Image8(width, height, 4, 200))).has_value());
+  const auto webp = lossless_webp(scenes::encode_png(Image8(16383, 1, 4, 200))).value();
+  int width = 0;
+  int height = 0;
+  ASSERT_EQ(
+      WebPGetInfo(reinterpret_cast<const std::uint8_t*>(webp.data()), webp.size(), &width, &height),
+      1);
+  EXPECT_EQ(width, 16383);
 }
 
 TEST(LosslessWebP, RefusesWhatIsNoPicture) {

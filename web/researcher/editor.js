@@ -15,16 +15,68 @@ export function faults_list(faults) {
       h("ul", {}, faults.map(({ field, message }) => h("li", {}, field ? [h("code", {}, field), ": "] : null, message)))];
 }
 
-/// Stores a study and shows it. Faults stand in `outcome`.
-export async function store(text, outcome) {
+const upload_ms = 300_000;  // a zip's pictures are read one by one
+
+/// Stores a study, JSON text or a zip, and shows it. Faults stand in `outcome`.
+export async function store(study_file, outcome) {
   outcome.replaceChildren();
   try {
-    const study = await post("/api/v1/studies", JSON.parse(text));
+    const body = study_file instanceof Blob ? study_file : JSON.parse(study_file);
+    const study = await post("/api/v1/studies", body, { deadline_ms: upload_ms });
     location.hash = `#study/${encodeURIComponent(study.id)}/${study.version}`;
   } catch (error) {
     const faults = error instanceof SyntaxError ? [{ field: "", message: `This is not JSON: ${error.message}` }] : faults_of(error);
     outcome.replaceChildren(...[faults_list(faults)].flat());
   }
+}
+
+/// A name for a picture that a study can have as id.
+const picture_id = (name) => name.replace(/\.[^.]*$/, "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 64) || "picture";
+
+/// Own pictures: uploaded from here, and written into the study's text where its cursor stands.
+function own_pictures(text) {
+  const list = h("ul", { class: "own-pictures" });
+  const state = h("p", { role: "status" });
+  const problems = h("div", { class: "problems", role: "alert" });
+  const files = h("input", { type: "file", id: "own-pictures", multiple: true, accept: "image/png,image/jpeg,image/webp" });
+
+  const shown = (name, { picture, width, height }) => {
+    const element = JSON.stringify({ id: picture_id(name), picture });
+    const insert = h("button", { type: "button", class: "quiet", on: { click: () => {
+      text.setRangeText(element, text.selectionStart, text.selectionEnd, "end");
+      text.focus();
+    } } }, "Write it at the cursor");
+    return h("li", {}, h("img", { src: `/api/v1/pictures/${picture}`, alt: name, width: "96" }),
+      h("div", {}, h("p", {}, `${name}, ${width} by ${height} pixels`), h("code", {}, element), insert));
+  };
+
+  const upload = async (chosen) => {
+    problems.replaceChildren();
+    for (const [index, file] of chosen.entries()) {
+      state.textContent = `Uploading ${file.name}, ${index + 1} of ${chosen.length}…`;
+      try {
+        list.append(shown(file.name, await post("/api/v1/pictures", file, { deadline_ms: upload_ms })));
+      } catch (error) {
+        problems.append(h("p", {}, `${file.name}: ${words_of(error)}`));
+      }
+    }
+    state.textContent = "";
+  };
+
+  files.addEventListener("change", async () => {
+    await upload([...files.files]);
+    files.value = "";
+  });
+  return h("section", { class: "card upload", on: {
+    dragover: (event) => event.preventDefault(),
+    drop: (event) => {
+      event.preventDefault();
+      upload([...event.dataTransfer.files]);
+    },
+  } }, h("h2", {}, "Pictures of your own"),
+  h("p", {}, "PNG, JPEG or WebP files of the study's picture size, chosen or dropped here. They are ranked beside rendered pictures: "
+    + "put what is shown for each among the techniques of the study or of a page, and give it an id of your own choice."),
+  h("label", { for: "own-pictures" }, "Picture files"), files, state, problems, list);
 }
 
 /// `version` of study `from`; as a copy it gets another id.
@@ -41,5 +93,6 @@ export async function editor_view(from, version, copy) {
       h("label", { for: "study-text" }, "Study file (JSON)"), text, outcome,
       h("div", { class: "actions" },
         h("button", { type: "button", class: "primary", on: { click: () => store(text.value, outcome) } }, "Check and store as draft"),
-        h("a", { class: "quiet", href: copy ? "#studies" : `#study/${encodeURIComponent(from)}` }, "Cancel"))));
+        h("a", { class: "quiet", href: copy ? "#studies" : `#study/${encodeURIComponent(from)}` }, "Cancel"))),
+    own_pictures(text));
 }

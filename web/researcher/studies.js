@@ -10,14 +10,15 @@ export const status_badge = (status) => h("span", { class: `badge ${status}` }, 
 
 function upload(studies) {
   const outcome = h("div", { role: "alert", class: "problems" });
-  const file = h("input", { type: "file", id: "study-file", accept: ".json,application/json" });
+  const file = h("input", { type: "file", id: "study-file", accept: ".json,application/json,.zip,application/zip" });
   file.addEventListener("change", async () => {
-    await store(await file.files[0].text(), outcome);
+    const [chosen] = file.files;
+    await store(chosen.name.toLowerCase().endsWith(".zip") ? chosen : await chosen.text(), outcome);
     file.value = "";
   });
   const template = h("select", { id: "study-template" }, studies.map(({ id, title }) => h("option", { value: id }, `${title} (${id})`)));
   return h("section", { class: "card upload" }, h("h2", {}, "New study"),
-    h("p", {}, "A study is one JSON file. It arrives as a draft; nobody can enter before it is published."),
+    h("p", {}, "A study is one JSON file, or a zip of study.json and pictures of your own. It arrives as a draft; no one can enter before it is published."),
     h("div", { class: "ways" },
       studies.length ? h("div", {}, h("label", { for: "study-template" }, "From a template"), template, " ",
         h("button", { type: "button", class: "quiet", on: { click: () => {

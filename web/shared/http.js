@@ -36,14 +36,16 @@ async function failure_of(response) {
 }
 
 /// Answers the parsed JSON (null for an empty body). Throws ApiError.
+/// A Blob goes as it is, anything else as JSON.
 export async function call(method, path, body = undefined, { deadline_ms = reply_deadline_ms } = {}) {
+  const file = body instanceof Blob;
   let response;
   let text;
   try {
     response = await fetch(path, {
       method,
-      headers: body === undefined ? {} : { "Content-Type": "application/json" },
-      body: body === undefined ? undefined : JSON.stringify(body),
+      headers: body === undefined ? {} : { "Content-Type": file ? body.type || "application/octet-stream" : "application/json" },
+      body: body === undefined || file ? body : JSON.stringify(body),
       credentials: "same-origin",
       cache: "no-store",
       signal: AbortSignal.timeout(deadline_ms),
@@ -63,7 +65,7 @@ export async function call(method, path, body = undefined, { deadline_ms = reply
 }
 
 export const get = (path, options) => call("GET", path, undefined, options);
-export const post = (path, body = {}) => call("POST", path, body);
+export const post = (path, body = {}, options = {}) => call("POST", path, body, options);
 export const put = (path, body) => call("PUT", path, body);
 export const remove = (path) => call("DELETE", path);
 
