@@ -22,8 +22,12 @@ void list_scenes(Call& call) {
 
 void get_scene(Call& call) {
   const auto list = scene_catalogue(call.service.folder.path());
-  for (const auto& scene : list.at("scenes"))
-    if (scene.at("id") == call.path.at("id")) return send_json(call.response, 200, scene);
+  for (auto scene : list.at("scenes")) {
+    if (scene.at("id") != call.path.at("id")) continue;
+    const RequestContext context{call.service.folder.path(), call.service.options.device, false};
+    scene.update(scene_choices(*load_request_scene(call.path.at("id"), context).scene));
+    return send_json(call.response, 200, scene);
+  }
   throw nothing_here();
 }
 

@@ -1,5 +1,6 @@
 #include "server/jobs/catalogue.h"
 
+#include "renderer/scene/scene.h"
 #include "renderer/technique.h"
 #include "scenes/library.h"
 #include "server/jobs/request_scene.h"
@@ -25,6 +26,22 @@ json scene_catalogue(const std::filesystem::path& data) {
                     {"notes", about.at("notes")}});
   }
   return {{"scenes", list}};
+}
+
+json scene_choices(const Scene& scene) {
+  const auto vector = [](const glm::dvec3& v) { return json{v.x, v.y, v.z}; };
+  json cameras = json::array();
+  for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+  json lights = json::array();
+  for (const Light& light : scene.lights) {
+    if (light.kind == LightKind::directional)
+      lights.push_back({{"name", light.name}, {"direction", vector(light.direction)}});
+    else
+      lights.push_back({{"name", light.name}, {"position", vector(light.position)}});
+  }
+  return {{"cameras", cameras},
+          {"lights", lights},
+          {"diagonal", glm::length(world_bounds(scene).size())}};
 }
 
 json technique_catalogue() {
