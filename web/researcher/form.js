@@ -17,15 +17,34 @@ function set_value(field, value) {
   else field.value = String(value);
 }
 
+const slider_steps = 200;
+
+/// A slider for a number with both ends; by factors where the range spans more than a hundredfold.
+function slider_of(field, schema, label) {
+  const { minimum: low, maximum: high } = schema;
+  if (field.type !== "number" || !Number.isFinite(low) || !Number.isFinite(high) || high <= low) return null;
+  const by_factors = low > 0 && high / low > 100;
+  const slider = h("input", { type: "range", min: "0", max: slider_steps, step: "1", "aria-label": `${label}, slider` });
+  const place = (value) => slider_steps * (by_factors ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
+  const value = (share) => (by_factors ? low * (high / low) ** share : low + (high - low) * share);
+  slider.value = String(place(field.valueAsNumber));
+  slider.addEventListener("input", () => {
+    const chosen = value(slider.valueAsNumber / slider_steps);
+    field.value = String(schema.type === "integer" ? Math.round(chosen) : Number(chosen.toPrecision(4)));
+  });
+  field.addEventListener("input", () => (slider.value = String(place(field.valueAsNumber))));
+  return slider;
+}
+
 export class ParameterForm {
-  /// `values` override the schema's defaults (a preset's).
-  constructor(schema, values = {}) {
+  /// `values` override the schema's defaults (a preset's). `prefix` tells forms of one page apart.
+  constructor(schema, values = {}, { prefix = "", sliders = false } = {}) {
     this.schema = schema;
     this.fields = new Map();
     const properties = Object.entries(schema.properties ?? {})
       .sort(([, a], [, b]) => (a["x-order"] ?? 0) - (b["x-order"] ?? 0));
     this.element = h("div", { class: "parameters" }, properties.map(([name, property]) => {
-      const id = `parameter-${name}`;
+      const id = `${prefix}parameter-${name}`;
       const field = field_of(name, property, id);
       set_value(field, values[name] ?? property.default ?? "");
       this.fields.set(name, field);
@@ -33,7 +52,7 @@ export class ParameterForm {
       const unit = property["x-unit"] ? ` ${property["x-unit"]}` : "";
       if (property.description) field.setAttribute("aria-describedby", `${id}-help`);
       return h("div", { class: "parameter" }, h("label", { for: id }, name.replaceAll("_", " "),
-        unit ? h("span", { class: "unit" }, unit) : null), field,
+        unit ? h("span", { class: "unit" }, unit) : null), field, sliders ? slider_of(field, property, name.replaceAll("_", " ")) : null,
       property.description ? h("p", { id: `${id}-help`, class: "small" }, `${property.description}${range ? ` (${range.trim()})` : ""}`) : null);
     }));
   }

@@ -1,8 +1,9 @@
 // The researcher's pages: #studies, #study/ID/VERSION, #people/ID/VERSION, #edit/ID/VERSION, #copy/ID/VERSION
-// #bench and #experiments.
+// #bench, #compare and #experiments.
 
 import { h, show } from "/assets/shared/dom.js";
 import { bench_view } from "./bench.js";
+import { compare_view } from "./compare.js";
 import { editor_view } from "./editor.js";
 import { experiments_view } from "./experiments.js";
 import { people_view } from "./people.js";
@@ -19,14 +20,17 @@ async function route() {
   leaving = new AbortController();
   const { signal } = leaving;
   const [place, id, version] = location.hash.slice(1).split("/").map(decodeURIComponent);
-  for (const link of document.querySelectorAll("nav a")) {
-    const here = link.hash === `#${place || "studies"}` || (place !== "bench" && link.hash === "#studies");
+  const links = [...document.querySelectorAll("nav a")];
+  const own = links.some((link) => link.hash === `#${place}`);  // all other pages are a study's
+  for (const link of links) {
+    const here = link.hash === (own ? `#${place}` : "#studies");
     if (here) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
   try {
     const views = {
       bench: () => bench_view(signal),
+      compare: () => compare_view(signal),
       experiments: () => experiments_view(signal),
       study: () => study_view(id, version, signal),
       people: () => people_view(id, version),
