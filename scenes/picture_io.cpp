@@ -22,14 +22,21 @@ void write_file(const std::filesystem::path& file, const std::string& bytes) {
   if (!stream) throw bad_value("out", "cannot write " + file.string());
 }
 
-/// Extension that stands for what the first bytes say. Throws unreadable for anything else.
-std::string format_of(std::string_view bytes) {
+/// Extension that stands for what the first bytes say; empty for anything else.
+std::string known_format(std::string_view bytes) {
   if (bytes.substr(0, 8) == std::string_view("\x89PNG\r\n\x1a\n", 8)) return ".png";
   if (bytes.substr(0, 3) == std::string_view("\xff\xd8\xff", 3)) return ".jpg";
   if (bytes.substr(0, 4) == std::string_view("II*\0", 4) ||
       bytes.substr(0, 4) == std::string_view("MM\0*", 4))
     return ".tif";
-  throw unreadable("the picture is neither PNG nor JPEG nor TIFF");
+  return {};
+}
+
+/// The same; throws unreadable for anything else.
+std::string format_of(std::string_view bytes) {
+  const std::string format = known_format(bytes);
+  if (format.empty()) throw unreadable("the picture is neither PNG nor JPEG nor TIFF");
+  return format;
 }
 
 /// Picture with exactly four channels: grey spreads over three, missing alpha is 255.
@@ -88,8 +95,9 @@ Image8 decode_picture(std::string_view bytes, std::uint64_t most_bytes) {
 Image8 decode_shown(std::string_view bytes, std::uint64_t most_bytes, std::uint8_t surround) {
   const bool webp =
       bytes.size() > 12 && bytes.substr(0, 4) == "RIFF" && bytes.substr(8, 4) == "WEBP";
-  const std::string format = webp ? ".webp" : format_of(bytes);
-  if (format == ".tif") throw unreadable("the picture is neither PNG nor JPEG nor WebP");
+  const std::string format = webp ? ".webp" : known_format(bytes);
+  if (format.empty() || format == ".tif")
+    throw unreadable("the picture is neither PNG nor JPEG nor WebP");
   Image8 picture = as_rgba(picture_formats().decode_upright(format, bytes, most_bytes));
   for (std::size_t i = 0; i < picture.pixels.size(); i += 4) {
     const int alpha = picture.pixels[i + 3];
