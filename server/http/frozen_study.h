@@ -40,7 +40,7 @@ struct FrozenStudy {
   PagePictures practice;
 
  private:
-  static constexpr std::size_t most_plans = 1024;
+  static constexpr std::size_t most_plans = 20000;
   mutable std::mutex plans_mutex;
   mutable std::map<std::size_t, study::EnrolmentPlan> plans;  ///< by place
 };
