@@ -171,6 +171,17 @@ ParameterValues complete_parameters(const std::vector<Parameter>& declared,
   return complete;
 }
 
+bool has_effect(const Parameter& parameter, const std::vector<Parameter>& declared,
+                const ParameterValues& values) {
+  if (!parameter.only_with) return true;
+  const Choice& needed = *parameter.only_with;
+  if (const auto given = values.find(needed.name); given != values.end())
+    return std::get<std::string>(given->second) == needed.value;
+  return std::any_of(declared.begin(), declared.end(), [&](const Parameter& other) {
+    return other.name == needed.name && std::get<std::string>(other.default_value) == needed.value;
+  });
+}
+
 bool boolean_of(const ParameterValues& values, const std::string& name) {
   return typed<bool>(values, name);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,6 +14,12 @@ using ParameterValues = std::map<std::string, ParameterValue>;
 
 enum class ParameterType { boolean, integer, real, choice };
 enum class ParameterScale { linear, logarithmic };
+
+/// A choice of a parameter.
+struct Choice {
+  std::string name;   ///< of the parameter
+  std::string value;  ///< its choice
+};
 
 /// One parameter of a technique, declared once. The GLSL names, validation, JSON Schema, web form,
 /// README table check and sweep ranges are all derived from this.
@@ -27,6 +34,7 @@ struct Parameter {
   std::vector<std::string> choices;  ///< of type choice
   std::string meaning;
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
+  std::optional<Choice> only_with = {};  ///< without this choice it changes nothing
 };
 
 /// The value as people write it: "true", "3", "0.25" (shortest that reads back equal), "linear".
@@ -40,6 +48,10 @@ ParameterValue checked_value(const Parameter& parameter, const ParameterValue& g
 /// a name that is not declared is an error too.
 ParameterValues complete_parameters(const std::vector<Parameter>& declared,
                                     const ParameterValues& given);
+
+/// Whether the parameter may change a picture of these values, which may lack defaults.
+bool has_effect(const Parameter& parameter, const std::vector<Parameter>& declared,
+                const ParameterValues& values);
 
 /// Values of completed parameters. A name or type other than declared is a defect of the caller:
 /// std::logic_error.

@@ -42,6 +42,8 @@ nlohmann::json property_of(const Parameter& parameter) {
     property["minimum"] = parameter.minimum;
     property["maximum"] = parameter.maximum;
   }
+  if (parameter.only_with)
+    property["x-only-with"] = {{parameter.only_with->name, parameter.only_with->value}};
   if (parameter.type == ParameterType::integer || parameter.type == ParameterType::real) {
     property["x-unit"] = parameter.unit;
     property["x-scale"] = parameter.scale == ParameterScale::logarithmic ? "logarithmic" : "linear";

@@ -32,11 +32,28 @@ void finish_parameter(const std::string& technique, Parameter& parameter) {
   }
 }
 
+/// A condition names a choice that there is.
+void check_conditions(const TechniqueDescription& description) {
+  for (const Parameter& parameter : description.parameters) {
+    if (!parameter.only_with) continue;
+    const Choice& needed = *parameter.only_with;
+    if (std::none_of(description.parameters.begin(), description.parameters.end(),
+                     [&](const Parameter& other) {
+                       return other.name == needed.name &&
+                              std::find(other.choices.begin(), other.choices.end(), needed.value) !=
+                                  other.choices.end();
+                     }))
+      throw std::logic_error("technique " + description.id + ", parameter " + parameter.name +
+                             ": there is no choice " + needed.value + " of " + needed.name);
+  }
+}
+
 void finish_description(TechniqueDescription& description) {
   if (!description.create)
     throw std::logic_error("technique " + description.id + " cannot be created");
   const auto& common = common_parameters();
   description.parameters.insert(description.parameters.end(), common.begin(), common.end());
+  check_conditions(description);
   std::set<std::string> names;
   for (Parameter& parameter : description.parameters) {
     finish_parameter(description.id, parameter);

@@ -18,10 +18,13 @@ using vulkan::Sampling;
 FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
                       const ParameterValues& parameters, const Plan& plan, const Window& window) {
   const Camera& camera = request.scene->cameras[find_camera(*request.scene, request.camera)];
+  const GpuScene& scene = state.upload(request.scene, camera, plan);
   return {request,
           parameters,
-          state.upload(request.scene, camera, plan),
+          scene,
           camera,
+          camera_matrices(camera, scene.origin(),
+                          static_cast<double>(request.width) / request.height, scene.radius()),
           {},
           samples_per_side(request.supersampling),
           window,
@@ -31,12 +34,6 @@ FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
 Plan checked(Plan plan, const DeviceLimits& limits) {
   check_memory(plan, limits);
   return plan;
-}
-
-CameraMatrices whole_camera(const FrameSetup& setup) {
-  return camera_matrices(setup.camera, setup.scene.origin(),
-                         static_cast<double>(setup.request.width) / setup.request.height,
-                         setup.scene.radius());
 }
 
 std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup, const Plan& plan) {
@@ -68,7 +65,6 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
       plan_(checked(make_plan(request, parameters, state.boxes_of(request.scene)),
                     state.device.limits())),
       setup_(make_setup(state, request, parameters, plan_, window)),
-      camera_(whole_camera(setup_)),
       lights_(make_lights(setup_, plan_)),
       targets_(state.device, window, setup_.side, wanted_targets(in_rounds)) {}
 
@@ -150,7 +146,8 @@ vulkan::Bindings FrameRun::frame_bindings() {
 void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
                     bool count_statistics, const std::function<void(double)>& progress) {
   setup_.window = window;
-  setup_.matrices = camera_of_window(camera_, window, request_.width, request_.height);
+  setup_.matrices =
+      camera_of_window(setup_.picture_matrices, window, request_.width, request_.height);
   for (const auto& light : lights_)
     if (light) light->choose_points(round);
   state_.constants.reset();

@@ -54,7 +54,6 @@ class FrameRun {
   const RenderRequest& request_;
   Plan plan_;
   FrameSetup setup_;
-  CameraMatrices camera_;                           ///< of the whole picture
   std::vector<std::unique_ptr<LightPass>> lights_;  ///< null where the plan has left one out
   FrameTargets targets_;
   std::vector<std::string> notes_;

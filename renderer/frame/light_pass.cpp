@@ -95,6 +95,7 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
                            light_,
                            fit_,
                            setup_.matrices,
+                           setup_.picture_matrices,
                            frame.geometry,
                            frame.device,
                            frame.pipelines,

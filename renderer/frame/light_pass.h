@@ -15,6 +15,7 @@ struct FrameSetup {
   const ParameterValues& parameters;  ///< complete
   const GpuScene& scene;
   const Camera& camera;
+  CameraMatrices picture_matrices;
   CameraMatrices matrices;
   std::uint32_t side = 1;    ///< samples along a pixel's side
   Window window;             ///< what of the picture is drawn; `matrices` are its own

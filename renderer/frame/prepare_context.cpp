@@ -4,9 +4,9 @@
 
 namespace penumbra {
 
-void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
-                                  const vulkan::Bindings& bindings,
-                                  const glm::mat4& clip_from_world) {
+std::uint64_t PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                                           const vulkan::Bindings& bindings,
+                                           const glm::mat4& clip_from_world) {
   vulkan::GraphicsState state = program.state;
   const auto pipeline_for = [&](bool masked) -> const vulkan::Pipeline& {
     vulkan::ProgramSource source{program.stages, program.preamble};
@@ -26,6 +26,7 @@ void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgra
   const auto drawn = [&](const DrawRange& range) {
     return range.casts_shadow && may_touch(range.box(), sides);
   };
+  std::uint64_t drawn_indices = 0;
   for (std::size_t i = 0; i < ranges.size();) {
     const DrawRange& first = ranges[i];
     if (!drawn(first)) {
@@ -49,8 +50,10 @@ void PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgra
     if (first.masked) commands.constants(first.material);
     commands.cull(first.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
+    drawn_indices += count;
     i = next;
   }
+  return drawn_indices / 3;
 }
 
 }  // namespace penumbra

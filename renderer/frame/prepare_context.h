@@ -28,7 +28,8 @@ class PrepareContext {
   const GpuScene& scene;
   const WorldLight& light;
   const LightFit& fit;
-  const CameraMatrices& camera;
+  const CameraMatrices& camera;          ///< of the window that is drawn
+  const CameraMatrices& picture_camera;  ///< of the whole picture
   const GeometryBuffer& geometry;
   vulkan::Device& device;
   vulkan::PipelineCache& pipelines;
@@ -54,9 +55,10 @@ class PrepareContext {
   }
 
   /// Draws all casters that may touch the clip volume of `clip_from_world`; inside a rendering.
-  /// `bindings` are the program's own resources; those of the frame are added.
-  void draw_casters(vulkan::Commands& commands, const CasterProgram& program,
-                    const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
+  /// `bindings` are the program's own resources; those of the frame are added. Returns the number
+  /// of triangles.
+  std::uint64_t draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                             const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
 };
 
 }  // namespace penumbra

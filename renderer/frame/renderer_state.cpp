@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "renderer/frame/frame_run.h"
+#include "renderer/shadow_maps/layout.h"
 
 namespace penumbra {
 
@@ -37,6 +38,7 @@ Renderer::State::State(const RendererOptions& options)
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vulkan::MemoryKind::readback),
       most_window_samples(options.most_window_samples) {
   shaders.add(embedded_renderer_shaders());
+  shaders.add("renderer/shadow_maps/chosen_layout.glsl", shadow_maps::chosen_layout_glsl());
 }
 
 const std::vector<Bounds>& Renderer::State::boxes_of(const std::shared_ptr<const Scene>& scene) {

@@ -58,24 +58,28 @@ struct MaterialData {
   vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
 };
 
-// Faces of a map: one for a spot or directional light, six for a point light or a wide spot light.
-PENUMBRA_CONSTANT int max_map_faces = 6;
+// Most views of a map: cascades, or the six faces around a point light.
+PENUMBRA_CONSTANT int max_map_views = 8;
 
 /// One view from the light. A point x of it lies at origin + s (forward + a right + b up) when
 /// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the
-/// map (b downwards) and s the distance along `forward`.
-struct MapFace {
+/// map (b downwards) and s the distance along `forward`; unless the map is warped, as `unwarp`
+/// tells.
+struct MapView {
   mat4 clip_from_world;
-  vec4 origin;   // xyz world, w 1 for perspective
-  vec4 right;    // xyz scaled by half the map's width at unit distance
-  vec4 up;       // xyz scaled likewise, towards growing v
-  vec4 forward;  // xyz unit, w size of a texel at unit distance (perspective) or anywhere, m
+  vec4 origin;     // xyz world, w 1 for perspective
+  vec4 right;      // xyz scaled by half the map's width at unit distance
+  vec4 up;         // xyz scaled likewise, towards growing v
+  vec4 forward;    // xyz unit, w size of a texel at unit distance (perspective) or anywhere, m
+  vec4 range;      // x near, y far, m along forward; z 1 / (far - near); w bias of every depth, m
+  vec4 choice;     // what the layout's GLSL chooses views by
+  vec4 unwarp[3];  // columns, xyz each: from a place (u, v, 1) in texels to the unwarped map's,
+                   // times a common factor
 };
 
 struct MapData {
-  MapFace faces[max_map_faces];
-  vec4 range;  // x near, y far, z 1 / (far - near), w faces
-  vec4 texel;  // x map size, y kernel radius in texels, z constant bias in m, w slope scale
+  MapView views[max_map_views];
+  vec4 texel;  // x texels along a view's side, y kernel radius in texels, z views, w slope scale
 };
 
 /// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions

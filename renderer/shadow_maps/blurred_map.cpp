@@ -99,7 +99,7 @@ void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settin
                          Requirements& needs) {
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t bytes =
-      std::uint64_t{size} * size * face_count(input.light) * vulkan::texel_bytes(settings.format);
+      std::uint64_t{size} * size * view_count(input) * vulkan::texel_bytes(settings.format);
   needs.memory.push_back({settings.name + " rows", bytes, size});
   // A chain of halves adds a third.
   const std::uint64_t chain = has_mips(settings, input.parameters) ? bytes / 3 : 0;
@@ -113,8 +113,8 @@ void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,
               : mips                             ? vulkan::Sampling::linear_mipmapped
                                                  : vulkan::Sampling::linear;
   if (!image_) create(context, depth, settings, mips);
-  for (std::uint32_t face = 0; face < image_.description().layers; ++face)
-    blur(context, depth, settings, face);
+  for (std::uint32_t view = 0; view < image_.description().layers; ++view)
+    blur(context, depth, settings, view);
   if (mips) context.pass("mips", [&](vulkan::Commands& commands) { reduce(commands); });
 }
 
@@ -130,7 +130,7 @@ void BlurredMap::create(PrepareContext& context, const DepthMap& depth,
 }
 
 void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
-                      std::uint32_t face) {
+                      std::uint32_t view) {
   const auto run = [&](const std::string& name, const std::string& fragment,
                        const vulkan::Image& target, const vulkan::Bindings& bindings) {
     vulkan::ProgramSource source;
@@ -144,7 +144,7 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
     vulkan::RenderTargets targets;
     targets.width = target.description().width;
     targets.height = target.description().height;
-    targets.colors = {{target.slice(face), false, {}}};
+    targets.colors = {{target.slice(view), false, {}}};
     const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
     // An encoder may read parameters that are no constants.
     vulkan::Bindings all = context.frame_bindings;
@@ -152,7 +152,7 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
     context.pass(name, [&](vulkan::Commands& commands) {
       commands.begin_rendering(targets);
       commands.bind(pipeline, all);
-      commands.constants(face);
+      commands.constants(view);
       commands.full_screen_triangle();
       commands.end_rendering();
     });

@@ -12,7 +12,7 @@ uniform sampler2DArray blurred_rows;
 const ivec2 direction = ivec2(0, 1);
 #endif
 
-layout(push_constant) uniform BlurBlock { uint face; } blur;
+layout(push_constant) uniform BlurBlock { uint view; } blur;
 
 layout(location = 0) out vec4 out_value;
 
@@ -27,10 +27,10 @@ vec4 value_at(int offset) {
   ivec2 texel = ivec2(gl_FragCoord.xy) + offset * direction;
 #ifdef ENCODE
   ivec2 last = textureSize(shadow_map, 0).xy - 1;
-  return encode_depth(texelFetch(shadow_map, ivec3(clamp(texel, ivec2(0), last), int(blur.face)), 0).r);
+  return encode_depth(texelFetch(shadow_map, ivec3(clamp(texel, ivec2(0), last), int(blur.view)), 0).r);
 #else
   ivec2 last = textureSize(blurred_rows, 0).xy - 1;
-  return texelFetch(blurred_rows, ivec3(clamp(texel, ivec2(0), last), int(blur.face)), 0);
+  return texelFetch(blurred_rows, ivec3(clamp(texel, ivec2(0), last), int(blur.view)), 0);
 #endif
 }
 

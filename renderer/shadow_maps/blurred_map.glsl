@@ -35,7 +35,7 @@ vec4 read_blurred(ShadowQuery query, MapPoint point) {
   precise vec4 sum = vec4(0.0);  // of small shares: values may be near the format's end
   for (int i = 0; i < probes.count; ++i) {
     vec2 place = point.texel + probes.along * ((float(i) + 0.5) * share - 0.5);
-    sum += share * textureLod(blurred_map, vec3(place / map.texel.x, float(point.face)), probes.level);
+    sum += share * textureLod(blurred_map, vec3(place / map.texel.x, float(point.view)), probes.level);
   }
   return sum;
 }
@@ -50,7 +50,7 @@ float read_logarithms(MapPoint point) {
   vec4 values, weights;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
-    values[i] = texelFetch(blurred_map, ivec3(clamp(first + step, ivec2(0), last), point.face), 0).r;
+    values[i] = texelFetch(blurred_map, ivec3(clamp(first + step, ivec2(0), last), point.view), 0).r;
     weights[i] = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
   }
   float greatest = max(max(values.x, values.y), max(values.z, values.w));
@@ -63,8 +63,9 @@ float overflow() { return uintBitsToFloat(0x7f800000u); }
 
 // Level 0 red, 1 yellow, 2 green, 3 and above blue; black outside the map.
 vec4 draw_diagnostic_mip_level(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 0.0);
-  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  MapPoint point = locate(query, view, 0.0);
   float level = min(map_probes(query, point).level, 3.0);
   return vec4(clamp(2.0 - level, 0.0, 1.0), clamp(min(level, 3.0 - level), 0.0, 1.0),
               clamp(level - 2.0, 0.0, 1.0), 1.0);

@@ -36,7 +36,7 @@ struct BlurSettings {
 };
 
 /// A map of values that may be averaged, made of a depth map and blurred: moments, exponentials.
-/// Same faces as the depth map, one layer each, with a mip chain where parameter mips asks for one.
+/// Same views as the depth map, one layer each, with a mip chain where parameter mips asks for one.
 class BlurredMap {
  public:
   /// What it allocates beside the depth map.
@@ -55,7 +55,7 @@ class BlurredMap {
   void create(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
               bool mips);
   void blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
-            std::uint32_t face);
+            std::uint32_t view);
   void reduce(vulkan::Commands& commands);
 
   vulkan::Image rows_;   ///< blurred along rows only

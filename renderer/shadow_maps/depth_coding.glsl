@@ -1,45 +1,79 @@
 // What a map keeps of a depth that runs evenly from 0 at near to 1 at far. Parameters `depth` and
-// `depth_bits` choose; techniques without them keep it as it is, in 32 bits.
+// `depth_bits` choose; techniques without them keep it as it is, in 32 bits. `range` is a view's.
 #ifndef PENUMBRA_DEPTH_CODING_GLSL
 #define PENUMBRA_DEPTH_CODING_GLSL
 #include "renderer/shaders/shader_types.h"
 
 layout(std140) uniform MapBlock { MapData map; };
 
-#ifdef variant_depth_hyperbolic
-// As a projection leaves it after the division by w: even in 1/z. Parallel rays have no such division.
-bool is_divided() { return map.faces[0].origin.w > 0.5; }
+/// Distance along a view's axis as an even depth.
+float even_depth_of(vec4 range, float distance) { return (distance - range.x) * range.z; }
 
-float coded_depth(float depth) {
-  if (!is_divided()) return depth;
-  depth = clamp(depth, 0.0, 1.0);
-  return depth * map.range.y / (map.range.x + depth / map.range.z);
+/// World size of a texel of an unwarped view at this distance along its axis, m.
+float texel_size(MapView view, float distance) {
+  return view.forward.w * (view.origin.w > 0.5 ? distance : 1.0);
 }
 
-float even_depth(float coded) {
+/// How a view spreads its texels around a place. A step d, in texels, is a step of texels * d /
+/// (1 + dot(lean, d)) on the unwarped map.
+struct Spread {
+  mat2 texels;
+  vec2 lean;
+};
+
+Spread spread_at(MapView view, vec2 texel) {
+  mat3 unwarp = mat3(view.unwarp[0].xyz, view.unwarp[1].xyz, view.unwarp[2].xyz);
+  vec3 place = unwarp * vec3(texel, 1.0);
+  vec2 plain = place.xy / place.z;
+  Spread spread;
+  spread.lean = vec2(unwarp[0].z, unwarp[1].z) / place.z;
+  spread.texels = mat2(unwarp[0].xy / place.z - plain * spread.lean.x,
+                       unwarp[1].xy / place.z - plain * spread.lean.y);
+  return spread;
+}
+
+/// Longest step on the unwarped map for a step of one texel: the greater singular value.
+float widest_texel(Spread spread) {
+  mat2 m = spread.texels;
+  return 0.5 * (length(vec2(m[0][0] + m[1][1], m[0][1] - m[1][0])) +
+                length(vec2(m[0][0] - m[1][1], m[0][1] + m[1][0])));
+}
+
+#ifdef variant_depth_hyperbolic
+// As a projection leaves it after the division by w: even in 1/z. Parallel rays have no such division;
+// the views of a light are all of one kind.
+bool is_divided() { return map.views[0].origin.w > 0.5; }
+
+float coded_depth(vec4 range, float depth) {
+  if (!is_divided()) return depth;
+  depth = clamp(depth, 0.0, 1.0);
+  return depth * range.y / (range.x + depth / range.z);
+}
+
+float even_depth(vec4 range, float coded) {
   if (!is_divided()) return coded;
-  return coded * map.range.x / (map.range.y - coded / map.range.z);
+  return coded * range.x / (range.y - coded / range.z);
 }
 
 /// Change of distance for a change of what is kept, m, at this distance along the axis.
-float coding_slope(float distance) {
-  if (!is_divided()) return 1.0 / map.range.z;
-  return distance * distance / (map.range.x * map.range.y * map.range.z);
+float coding_slope(vec4 range, float distance) {
+  if (!is_divided()) return 1.0 / range.z;
+  return distance * distance / (range.x * range.y * range.z);
 }
 #else
-float coded_depth(float depth) { return depth; }
-float even_depth(float coded) { return coded; }
-float coding_slope(float distance) { return 1.0 / map.range.z; }
+float coded_depth(vec4 range, float depth) { return depth; }
+float even_depth(vec4 range, float coded) { return coded; }
+float coding_slope(vec4 range, float distance) { return 1.0 / range.z; }
 #endif
 
 /// How far a kept depth may lie from the one that was meant, m: half a step of 16 bits, two units in
 /// the last place of a float below 1. Even depth in 32 bits loses less than positions do, which are
 /// floats too.
-float coding_error(float distance) {
+float coding_error(vec4 range, float distance) {
 #if defined(variant_depth_bits_16)
-  return 0.5 / 65535.0 * coding_slope(distance);
+  return 0.5 / 65535.0 * coding_slope(range, distance);
 #elif defined(variant_depth_hyperbolic)
-  return exp2(-23.0) * coding_slope(distance);
+  return exp2(-23.0) * coding_slope(range, distance);
 #else
   return 0.0;
 #endif

@@ -5,8 +5,34 @@
 
 #include "renderer/error.h"
 #include "renderer/scene/caster_defects.h"
+#include "renderer/shadow_maps/light_view.h"
 
 namespace penumbra::shadow_maps {
+
+namespace {
+
+/// `layout`, and what the layouts declare.
+std::vector<Parameter> layout_parameters() {
+  std::vector<Parameter> list;
+  Parameter chosen;
+  chosen.name = "layout";
+  chosen.type = ParameterType::choice;
+  chosen.default_value = std::string(default_layout);
+  chosen.meaning = "Where depth lives.";
+  chosen.variant = true;
+  for (const Layout& layout : layouts()) {
+    chosen.choices.push_back(layout.id);
+    chosen.meaning += " " + layout.id + ": " + layout.meaning + ".";
+    for (Parameter own : layout.parameters) {
+      own.only_with = {chosen.name, layout.id};
+      list.push_back(own);
+    }
+  }
+  list.insert(list.begin(), chosen);
+  return list;
+}
+
+}  // namespace
 
 std::vector<Parameter> map_parameters() {
   std::vector<Parameter> list;
@@ -21,14 +47,7 @@ std::vector<Parameter> map_parameters() {
   map_size.meaning = "Width and height of the shadow map.";
   list.push_back(map_size);
 
-  Parameter layout;
-  layout.name = "layout";
-  layout.type = ParameterType::choice;
-  layout.choices = {"single"};
-  layout.default_value = std::string("single");
-  layout.meaning = "Where depth lives: one map over the light's cone.";
-  layout.variant = true;
-  list.push_back(layout);
+  for (const Parameter& parameter : layout_parameters()) list.push_back(parameter);
 
   Parameter strategy;
   strategy.name = "bias_strategy";
@@ -125,15 +144,21 @@ std::vector<Parameter> comparing_map_parameters() {
 }
 
 Diagnostic map_diagnostic() {
-  return {"map", "The depth map's first face as the light sees it: near is dark, far is bright."};
+  return {"map", "The depth map's first view as the light sees it: near is dark, far is bright."};
+}
+
+Diagnostic views_diagnostic() {
+  return {"views",
+          "Which view of the map tells of each pixel, by colour: red, yellow, green, cyan, blue, "
+          "magenta, orange, grey; mixed where two do, dark in shadow, black where none does."};
 }
 
 namespace {
 
-/// Strategies that ask for the surface behind the first.
 /// Of the two surfaces that some bias strategies tell apart.
 constexpr VkFormat layer_format = VK_FORMAT_D32_SFLOAT;
 
+/// Strategies that ask for the surface behind the first.
 bool knows_two_surfaces(const ParameterValues& parameters) {
   const std::string& strategy = choice_of(parameters, "bias_strategy");
   return strategy == "second-depth" || strategy == "midpoint" || strategy == "dual-depth" ||
@@ -153,6 +178,16 @@ void note_open_casters(PrepareContext& context) {
         std::to_string(open));
 }
 
+/// What the views of a map draw; what touches several is drawn as often.
+void note_triangles(PrepareContext& context, const std::vector<std::uint64_t>& triangles) {
+  if (triangles.size() < 2) return;
+  std::string counts;
+  for (const std::uint64_t count : triangles)
+    counts += (counts.empty() ? "" : ", ") + std::to_string(count);
+  context.notes.push_back("light " + context.input.light.name +
+                          ": the views of its map draw triangles: " + counts);
+}
+
 VkFormat depth_format(const ParameterValues& parameters) {
   const bool compact =
       parameters.contains("depth_bits") && choice_of(parameters, "depth_bits") == "16";
@@ -160,7 +195,7 @@ VkFormat depth_format(const ParameterValues& parameters) {
 }
 
 /// The range that parameters ask for in place of what was fitted.
-void set_range(LightView& view, const ParameterValues& parameters) {
+void set_given_range(shader::MapView& view, const ParameterValues& parameters) {
   if (!parameters.contains("near")) return;
   const auto given = [&](const char* name) {
     const auto value = static_cast<float>(real_of(parameters, name));
@@ -168,25 +203,35 @@ void set_range(LightView& view, const ParameterValues& parameters) {
       throw bad_value(name, std::string(name) + " is smaller than a float can be");
     return value;
   };
-  const float near = given("near");
-  const float far = given("far");
+  const float given_near = given("near");
+  const float given_far = given("far");
+  float near = view.range.x;
+  float far = view.range.y;
   // 1/z begins somewhere before 0, where that was not asked for.
-  if (choice_of(parameters, "depth") == "hyperbolic")
-    view.near_distance = std::max(view.near_distance, 1e-4f * view.far_distance);
-  if (near > 0.0f) view.near_distance = near;
-  if (far > 0.0f) view.far_distance = far;
-  if (view.near_distance >= view.far_distance)
-    throw bad_value(near > 0.0f ? "near" : "far",
+  if (choice_of(parameters, "depth") == "hyperbolic") near = std::max(near, 1e-4f * far);
+  if (given_near > 0.0f) near = given_near;
+  if (given_far > 0.0f) far = given_far;
+  if (near >= far)
+    throw bad_value(given_near > 0.0f ? "near" : "far",
                     "the map's range must end behind where it begins, but near is " +
-                        to_text(double{view.near_distance}) + " m and far " +
-                        to_text(double{view.far_distance}) + " m (0 fits them to the scene)");
+                        to_text(double{near}) + " m and far " + to_text(double{far}) +
+                        " m (0 fits them to the scene)");
+  set_range(view, near, far);
 }
 
 }  // namespace
 
+std::uint32_t view_count(const TechniqueInput& input) {
+  return chosen_layout(input.parameters).view_count(input.light, input.parameters);
+}
+
 void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
+  const Layout& layout = chosen_layout(input.parameters);
+  if (const std::string why = layout.refusal(input.light.kind); !why.empty())
+    throw unsupported(
+        "layout " + layout.id + " cannot serve light " + input.light.name + ": " + why, "layout");
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
-  const std::uint64_t texels = std::uint64_t{size} * size * face_count(input.light);
+  const std::uint64_t texels = std::uint64_t{size} * size * view_count(input);
   needs.memory.push_back(
       {"shadow map", texels * vulkan::texel_bytes(depth_format(input.parameters)), size});
   if (!knows_two_surfaces(input.parameters)) return;
@@ -194,43 +239,42 @@ void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
     needs.memory.push_back({layer, texels * vulkan::texel_bytes(layer_format), size});
 }
 
-void DepthMap::draw(PrepareContext& context, double kernel_radius, double border) {
+void DepthMap::draw(PrepareContext& context, const MapUse& use) {
   const ParameterValues& parameters = context.input.parameters;
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
-  // Room at the borders, up to a quarter of the map.
-  const double guard = std::min((border + 1.0) / size, 0.5 - 0.5 / widest_filtered_cone);
-  LightView view = fit_light_view(context.scene, context.light, context.fit, size, guard);
-  set_range(view, parameters);
+  Views views = chosen_layout(parameters)
+                    .fit({context.scene, context.light, context.fit, context.picture_camera,
+                          parameters, use, size});
+  const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
+  for (shader::MapView& view : views) {
+    set_given_range(view, parameters);
+    // Positions are floats: this much is lost on the way to a depth.
+    const float rounding = std::ldexp(view.range.y, -21);
+    view.range.w = static_cast<float>(real_of(parameters, "bias")) + slope_scale * rounding;
+  }
   if (!image_) {
     vulkan::ImageDescription description;
     description.format = depth_format(parameters);
     description.width = description.height = size;
-    description.layers = static_cast<std::uint32_t>(view.faces.size());
+    description.layers = static_cast<std::uint32_t>(views.size());
     description.array_view = true;
     description.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     image_ = vulkan::Image(context.device, context.memory, "shadow map", description);
   }
   shader::MapData data{};
-  std::copy(view.faces.begin(), view.faces.end(), data.faces);
-  data.range = {view.near_distance, view.far_distance,
-                1.0f / (view.far_distance - view.near_distance),
-                static_cast<float>(view.faces.size())};
-  const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
-  // Positions are floats: this much is lost on the way to a depth.
-  const float rounding = std::ldexp(view.far_distance, -21);
-  data.texel = {static_cast<float>(size), static_cast<float>(kernel_radius),
-                static_cast<float>(real_of(parameters, "bias")) + slope_scale * rounding,
-                slope_scale};
+  std::copy(views.begin(), views.end(), data.views);
+  data.texel = {static_cast<float>(size), static_cast<float>(use.kernel_radius),
+                static_cast<float>(views.size()), slope_scale};
   constants_ = context.constants.push(data);
 
   note_open_casters(context);
   if (knows_two_surfaces(parameters))
-    draw_layers(context, view);
+    draw_layers(context, views);
   else
-    draw_casters(context, view, image_, "");
+    draw_casters(context, views, image_, "");
 }
 
-void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
+void DepthMap::draw_casters(PrepareContext& context, const Views& views,
                             const vulkan::Image& target, const std::string& layer) const {
   const std::string& strategy = choice_of(context.input.parameters, "bias_strategy");
   CasterProgram program;
@@ -243,35 +287,38 @@ void DepthMap::draw_casters(PrepareContext& context, const LightView& view,
   program.state.depth_clamp = true;
   if (strategy == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
 
+  std::vector<std::uint64_t> triangles;
   context.pass("shadow map", [&](vulkan::Commands& commands) {
-    for (std::uint32_t face = 0; face < view.faces.size(); ++face) {
+    for (std::uint32_t view = 0; view < views.size(); ++view) {
       vulkan::RenderTargets targets;
       targets.width = targets.height = target.description().width;
-      targets.depth = target.slice(face);
+      targets.depth = target.slice(view);
       targets.depth_format = target.description().format;
       targets.clear_depth = true;
       targets.depth_clear_value = 1.0f;
       vulkan::Bindings bindings;
-      bindings.buffer("MapFaceBlock", context.constants.push(view.faces[face]));
+      bindings.buffer("MapViewBlock", context.constants.push(views[view]));
       bindings.buffer("MapBlock", constants_);
       if (&target == &second_)
-        bindings.texture_slice("first_depths", first_, face, 0, vulkan::Sampling::nearest);
+        bindings.texture_slice("first_depths", first_, view, 0, vulkan::Sampling::nearest);
       commands.begin_rendering(targets);
-      context.draw_casters(commands, program, bindings, view.faces[face].clip_from_world);
+      triangles.push_back(
+          context.draw_casters(commands, program, bindings, views[view].clip_from_world));
       commands.end_rendering();
     }
   });
+  note_triangles(context, triangles);
 }
 
-void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
+void DepthMap::draw_layers(PrepareContext& context, const Views& views) {
   if (!first_) {
     vulkan::ImageDescription layer = image_.description();
     layer.format = layer_format;
     first_ = vulkan::Image(context.device, context.memory, "first depths", layer);
     second_ = vulkan::Image(context.device, context.memory, "second depths", layer);
   }
-  draw_casters(context, view, first_, "#define LAYER\n");
-  draw_casters(context, view, second_, "#define LAYER\n#define SECOND_LAYER\n");
+  draw_casters(context, views, first_, "#define LAYER\n");
+  draw_casters(context, views, second_, "#define LAYER\n#define SECOND_LAYER\n");
 
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
@@ -287,14 +334,14 @@ void DepthMap::draw_layers(PrepareContext& context, const LightView& view) {
   bindings.texture("first_depths", first_, vulkan::Sampling::nearest);
   bindings.texture("second_depths", second_, vulkan::Sampling::nearest);
   context.pass("layers of depth", [&](vulkan::Commands& commands) {
-    for (std::uint32_t face = 0; face < view.faces.size(); ++face) {
+    for (std::uint32_t view = 0; view < views.size(); ++view) {
       vulkan::RenderTargets targets;
       targets.width = targets.height = image_.description().width;
-      targets.depth = image_.slice(face);
+      targets.depth = image_.slice(view);
       targets.depth_format = image_.description().format;
       commands.begin_rendering(targets);
       commands.bind(pipeline, bindings);
-      commands.constants(face);
+      commands.constants(view);
       commands.full_screen_triangle();
       commands.end_rendering();
     }

@@ -2,12 +2,12 @@
 #include "renderer/shaders/caster.glsl"
 #include "renderer/shadow_maps/depth_coding.glsl"
 
-layout(std140) uniform MapFaceBlock { MapFace face; };
+layout(std140) uniform MapViewBlock { MapView view; };
 
 #ifdef SECOND_LAYER
 uniform sampler2D first_depths;
 // Positions are floats: this much is lost on the way to a depth.
-float rounding_of_depth() { return exp2(-21.0) * map.range.y * map.range.z; }
+float rounding_of_depth() { return exp2(-21.0) * view.range.y * view.range.z; }
 #endif
 
 layout(location = 0) in vec3 world_position;
@@ -24,18 +24,18 @@ void main() {
   if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
   if (alpha < material.surface.z) discard;
 #endif
-  float distance = dot(world_position - face.origin.xyz, face.forward.xyz);
+  float distance = dot(world_position - view.origin.xyz, view.forward.xyz);
 #ifdef LAYER
   // One of two layers; layered_depths.frag makes a map of both.
-  gl_FragDepth = clamp((distance - map.range.x) * map.range.z, 0.0, 1.0);
+  gl_FragDepth = clamp(even_depth_of(view.range, distance), 0.0, 1.0);
 #ifdef SECOND_LAYER
   float first = texelFetch(first_depths, ivec2(gl_FragCoord.xy), 0).r;
   // Facets that meet in an edge lie at one depth, but for rounding.
   if (gl_FragDepth <= first + 4.0 * rounding_of_depth()) discard;
 #endif
 #else
-  float texel = face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
-  float bias = map.texel.z;
+  float texel = texel_size(view, distance) * widest_texel(spread_at(view, gl_FragCoord.xy));
+  float bias = view.range.w;
   if (parameter_bias_strategy == bias_strategy_slope ||
       (parameter_bias_strategy == bias_strategy_back_faces && gl_FrontFacing)) {
     // What this facet spans over the kernel; a facet seen edge-on is not followed to infinity. The
@@ -43,8 +43,8 @@ void main() {
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
     bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
-  bias += map.texel.w * coding_error(distance);
-  float depth = clamp((distance + bias - map.range.x) * map.range.z, 0.0, 1.0);
-  gl_FragDepth = coded_depth(depth);
+  bias += map.texel.w * coding_error(view.range, distance);
+  float depth = clamp(even_depth_of(view.range, distance + bias), 0.0, 1.0);
+  gl_FragDepth = coded_depth(view.range, depth);
 #endif
 }

@@ -1,14 +1,10 @@
-// Reading a depth map: where a receiver lies on it, and comparisons texel by texel.
+// Reading a depth map: which views show a receiver, where it lies on them, and comparisons texel by
+// texel.
 //
-// Filters never touch the map's image: they call locate, then compare_texel or fetch_depth with whole
-// texels near the place found. Another layout plugs in here, chosen by the constant parameter_layout:
-//   - locate fills a MapPoint: which view (a face here; a cascade or a tile elsewhere), the place in
-//     texels of that view, and the receiver's plane as a ratio of two
-//     functions that are affine in texels, which any projective view has, warped ones included;
-//   - fetch_depth answers the stored depth of a texel of that view (from an image here; from a storage
-//     buffer elsewhere, where no sampler reaches), 0 at near and 1 at far;
-//   - receiver_depth turns metres into those units, distance_of_depth turns them back.
-// Only filter hardware-bilinear reads the image itself, so it serves layouts that are one image.
+// The layout (renderer/shadow_maps/layouts) chooses views, and a technique says what one view tells:
+// every program that includes this defines
+//   float filter_view(ShadowQuery query, int view);   // 1 lit, 0 occluded
+// Filters call locate, then compare_texel or fetch_depth with whole texels near the place found.
 #ifndef PENUMBRA_DEPTH_MAP_GLSL
 #define PENUMBRA_DEPTH_MAP_GLSL
 #include "renderer/shaders/shadow_query.glsl"
@@ -16,30 +12,59 @@
 
 uniform sampler2DArray shadow_map;
 
+int view_count() { return int(map.texel.z); }
+
+/// The views that tell of a receiver, as the layout chooses them.
+struct ViewChoice {
+  int first;    // -1: none, so that it is lit
+  int second;   // where share is not 0
+  float share;  // of what the second tells, from 0 to 1
+};
+
+/// Place on a view in texels, 0 to the map's size; w as the view's clip matrix has it, above 0 before
+/// the light.
+vec3 place_on_view(int view, vec3 position) {
+  vec4 clip = map.views[view].clip_from_world * vec4(position, 1.0);
+  return vec3((0.5 + 0.5 * clip.xy / clip.w) * map.texel.x, clip.w);
+}
+
+bool is_on_view(int view, vec3 position) {
+  vec3 place = place_on_view(view, position);
+  return place.z > 0.0 && all(greaterThanEqual(place.xy, vec2(0.0))) &&
+         all(lessThanEqual(place.xy, vec2(map.texel.x)));
+}
+
+// Defines ViewChoice choose_views(vec3 position).
+#include "renderer/shadow_maps/chosen_layout.glsl"
+
+float filter_view(ShadowQuery query, int view);
+
+float calculate_shadow(ShadowQuery query) {
+  ViewChoice choice = choose_views(query.position);
+  if (choice.first < 0) return 1.0;
+  // One call in a loop: with two calls drivers would compile the filter twice.
+  int views = choice.share > 0.0 ? 2 : 1;
+  float lit = 0.0;
+  for (int i = 0; i < views; ++i) {
+    float own = filter_view(query, i == 0 ? choice.first : choice.second);
+    lit = i == 0 ? own : mix(lit, own, choice.share);
+  }
+  return lit;
+}
+
 /// A receiver on the map.
 struct MapPoint {
-  int face;            // view of the map; -1: outside it, lit
+  int view;            // of the map
   vec2 texel;          // place in texels, 0 .. map size
   float distance;      // m along the view's axis
-  float texel_width;   // m at that distance
+  Spread spread;       // of the texels there
+  float texel_width;   // m, of the widest there
   float grant;         // m that every comparison leaves to the receiver
+  vec4 range;          // of the view
   float nearest;       // m: no comparison follows the receiver's plane beyond
   vec3 plane_top;      // the receiver's plane meets the ray through texel + d at a distance of
   vec3 plane_bottom;   // dot(plane_top, (d, 1)) / dot(plane_bottom, (d, 1)) m
 };
-
-int face_of(vec3 offset) {
-  if (int(map.range.w) == 1) return 0;
-  vec3 size = abs(offset);
-  if (size.x >= size.y && size.x >= size.z) return offset.x > 0.0 ? 0 : 1;
-  if (size.y >= size.z) return offset.y > 0.0 ? 2 : 3;
-  return offset.z > 0.0 ? 4 : 5;
-}
-
-/// World size of a texel at this distance along the axis, m.
-float texel_size(MapFace face, float distance) {
-  return face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
-}
 
 /// How far the nearest texel's centre may be, in texels, from a place that a filter reaches.
 float texel_reach(float kernel_radius) { return 1.41421356 * (0.5 + kernel_radius); }
@@ -59,45 +84,50 @@ float granted_texels(float kernel_radius) {
   return 0.0;
 }
 
-/// `kernel_radius` in texels is how far the filter reads from the receiver's place.
-MapPoint locate(ShadowQuery query, float kernel_radius) {
+/// A function dot(f, (d, 1)) of steps on the unwarped map as one of steps in texels; ratios of two
+/// such stay what they are.
+vec3 over_texels(Spread spread, vec3 f) {
+  return vec3(f.xy * spread.texels + spread.lean * f.z, f.z);
+}
+
+/// Where a view shows the receiver. `kernel_radius` in texels is how far the filter reads from there.
+MapPoint locate(ShadowQuery query, int view_index, float kernel_radius) {
   MapPoint point;
-  point.face = face_of(query.position - map.faces[0].origin.xyz);
-  MapFace face = map.faces[point.face];
-  bool perspective = face.origin.w > 0.5;
+  point.view = view_index;
+  MapView view = map.views[view_index];
+  point.range = view.range;
+  bool perspective = view.origin.w > 0.5;
   vec3 position = query.position;
   if (parameter_bias_strategy == bias_strategy_normal_offset) {
     // Along the normal until the receiver's own plane, and any convex body behind it, lies wholly
     // behind the moved point over every texel that the filter reads. A step d across the axis leaves
     // the plane by d sin(angle between normal and axis).
-    float cosine = dot(query.normal, face.forward.xyz);
+    float cosine = dot(query.normal, view.forward.xyz);
     float across = sqrt(max(1.0 - cosine * cosine, 0.0));
-    float width = texel_size(face, dot(position - face.origin.xyz, face.forward.xyz));
+    float width = texel_size(view, dot(position - view.origin.xyz, view.forward.xyz)) *
+                  widest_texel(spread_at(view, place_on_view(view_index, position).xy));
     position += query.normal * (map.texel.w * texel_reach(kernel_radius) * width * across);
   }
-  vec4 clip = face.clip_from_world * vec4(position, 1.0);
-  point.texel = (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
-  point.distance = dot(position - face.origin.xyz, face.forward.xyz);
-  point.texel_width = texel_size(face, point.distance);
+  point.texel = place_on_view(view_index, position).xy;
+  point.distance = dot(position - view.origin.xyz, view.forward.xyz);
+  point.spread = spread_at(view, point.texel);
+  point.texel_width = texel_size(view, point.distance) * widest_texel(point.spread);
   point.grant = map.texel.w * granted_texels(kernel_radius) * point.texel_width;
   point.nearest = 0.0;
-  if (clip.w <= 0.0 || any(lessThan(point.texel, vec2(0.0))) ||
-      any(greaterThan(point.texel, vec2(map.texel.x)))) {
-    point.face = -1;
-    return point;
-  }
   // Rays of the view are origin + s (forward + a right + b up), or origin + s forward + a right + b up.
   vec2 gradient = 2.0 / map.texel.x *
-                  vec2(dot(query.normal, face.right.xyz), dot(query.normal, face.up.xyz));
-  float facing = dot(query.normal, face.forward.xyz);
+                  vec2(dot(query.normal, view.right.xyz), dot(query.normal, view.up.xyz));
+  float facing = dot(query.normal, view.forward.xyz);
   if (perspective) {
-    float height = dot(query.normal, position - face.origin.xyz);
+    float height = dot(query.normal, position - view.origin.xyz);
     point.plane_top = vec3(0.0, 0.0, height);
     point.plane_bottom = vec3(gradient, height / point.distance);
   } else {
     point.plane_top = vec3(-gradient, facing * point.distance);
     point.plane_bottom = vec3(0.0, 0.0, facing);
   }
+  point.plane_top = over_texels(point.spread, point.plane_top);
+  point.plane_bottom = over_texels(point.spread, point.plane_bottom);
   return point;
 }
 
@@ -114,11 +144,13 @@ float plane_distance(MapPoint point, vec2 offset) {
   return clamp(top / bottom, max(steep, point.nearest), point.distance);
 }
 
-/// Metres along the axis in the map's units, and back.
-float depth_of_distance(float distance) {
-  return coded_depth((distance - map.range.x) * map.range.z);
+/// Metres along the axis in the view's units, and back.
+float depth_of_distance(MapPoint point, float distance) {
+  return coded_depth(point.range, even_depth_of(point.range, distance));
 }
-float distance_of_depth(float depth) { return map.range.x + even_depth(depth) / map.range.z; }
+float distance_of_depth(MapPoint point, float depth) {
+  return point.range.x + even_depth(point.range, depth) / point.range.z;
+}
 
 /// The receiver's depth to compare with a texel of the map. Like casters, receivers behind far stand at
 /// it, where the map was given a far of its own.
@@ -131,13 +163,13 @@ float receiver_depth(MapPoint point, ivec2 texel) {
     float met = plane_distance(point, vec2(texel) + 0.5 - point.texel);
     distance += map.texel.w * (met - point.distance);
   }
-  return min(depth_of_distance(distance - point.grant), 1.0);
+  return min(depth_of_distance(point, distance - point.grant), 1.0);
 }
 
 /// Depth that the map holds; texels beyond the border repeat it.
 float fetch_depth(MapPoint point, ivec2 texel) {
   texel = clamp(texel, ivec2(0), ivec2(int(map.texel.x) - 1));
-  return texelFetch(shadow_map, ivec3(texel, point.face), 0).r;
+  return texelFetch(shadow_map, ivec3(texel, point.view), 0).r;
 }
 
 /// 1 where the texel leaves the receiver lit, else 0.

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "renderer/frame/prepare_context.h"
-#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/layout.h"
 
 namespace penumbra::shadow_maps {
 
-/// Parameters of every technique that draws a depth map: map_size, layout, bias_strategy, bias,
-/// slope_scale. Techniques append their own.
+/// Parameters of every technique that draws a depth map: map_size, layout and those of every
+/// layout, bias_strategy, bias, slope_scale. Techniques append their own.
 std::vector<Parameter> map_parameters();
 
 /// Those and how depth is kept, for techniques that only compare it: depth, depth_bits, near, far.
@@ -15,22 +15,23 @@ std::vector<Parameter> comparing_map_parameters();
 /// The picture `map` of every program that includes renderer/shadow_maps/diagnostics.glsl.
 Diagnostic map_diagnostic();
 
-/// A single depth map per light: what map techniques are composed from. Depth is the distance along
-/// the map's axis, 0 at near and 1 at far, written per fragment, even in 32 bits unless parameters
-/// ask for less; one layer a face. Bias strategies that know two surfaces draw both and make the
-/// map of them.
+/// The picture `views`, likewise.
+Diagnostic views_diagnostic();
+
+/// Views of the light's map, each a layer of its images.
+std::uint32_t view_count(const TechniqueInput& input);
+
+/// The depth map of a light: what map techniques are composed from. Depth is the distance along a
+/// view's axis, 0 at near and 1 at far, written per fragment, even in 32 bits unless parameters ask
+/// for less; one layer for each view of the layout. Bias strategies that know two surfaces draw
+/// both and make the map of them.
 class DepthMap {
  public:
-  /// What it allocates.
+  /// What it allocates. Throws `unsupported` for a light that the layout cannot serve.
   static void require(const TechniqueInput& input, Requirements& needs);
 
-  /// Draws the map for this frame. `kernel_radius` in texels is how far the filter reads from the
-  /// receiver's place; the bias of strategy slope follows it. The map is wider than what it serves
-  /// by `border` texels.
-  void draw(PrepareContext& context, double kernel_radius, double border);
-  void draw(PrepareContext& context, double kernel_radius) {
-    draw(context, kernel_radius, kernel_radius);
-  }
+  /// Draws the map for this frame.
+  void draw(PrepareContext& context, const MapUse& use);
 
   /// Names for renderer/shadow_maps/depth_map.glsl: "shadow_map" and "MapBlock".
   void bind(vulkan::Bindings& bindings,
@@ -40,9 +41,10 @@ class DepthMap {
   const vulkan::BufferRange& constants() const { return constants_; }
 
  private:
-  void draw_casters(PrepareContext& context, const LightView& view, const vulkan::Image& target,
+  using Views = std::vector<shader::MapView>;
+  void draw_casters(PrepareContext& context, const Views& views, const vulkan::Image& target,
                     const std::string& layer) const;
-  void draw_layers(PrepareContext& context, const LightView& view);
+  void draw_layers(PrepareContext& context, const Views& views);
 
   vulkan::Image image_;
   vulkan::Image first_;   ///< nearest surfaces, for strategies that know two

@@ -1,6 +1,6 @@
 #include "renderer/shaders/caster.glsl"
 
-layout(std140) uniform MapFaceBlock { MapFace face; };
+layout(std140) uniform MapViewBlock { MapView view; };
 
 layout(location = 0) in vec3 position;
 #ifdef MASKED
@@ -18,5 +18,5 @@ void main() {
   surface_uv = uv;
   vertex_alpha = color.a;
 #endif
-  gl_Position = face.clip_from_world * vec4(position, 1.0);
+  gl_Position = view.clip_from_world * vec4(position, 1.0);
 }

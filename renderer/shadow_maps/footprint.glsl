@@ -20,17 +20,16 @@ vec3 step_on_plane(ShadowQuery query, vec2 pixels) {
   return depth * (facing * across - slope * along) / (facing + slope);
 }
 
-vec2 texel_seen_at(ShadowQuery query, int face, vec2 pixels) {
-  vec4 clip = map.faces[face].clip_from_world * vec4(query.position + step_on_plane(query, pixels), 1.0);
-  return (0.5 + 0.5 * clip.xy / clip.w) * map.texel.x;
+vec2 texel_seen_at(ShadowQuery query, int view, vec2 pixels) {
+  return place_on_view(view, query.position + step_on_plane(query, pixels)).xy;
 }
 
 /// Steps on the map, in texels, for a step of one pixel to the right (xy) and down (zw). From the
 /// receiver's plane: differences between neighbouring pixels are garbage across depth edges.
 vec4 map_footprint(ShadowQuery query, MapPoint point) {
   const vec2 right = vec2(0.5, 0.0), down = vec2(0.0, 0.5);
-  return vec4(texel_seen_at(query, point.face, right) - texel_seen_at(query, point.face, -right),
-              texel_seen_at(query, point.face, down) - texel_seen_at(query, point.face, -down));
+  return vec4(texel_seen_at(query, point.view, right) - texel_seen_at(query, point.view, -right),
+              texel_seen_at(query, point.view, down) - texel_seen_at(query, point.view, -down));
 }
 
 /// Width of the square of texels that a pixel covers, its longer side as a mip chain has it.

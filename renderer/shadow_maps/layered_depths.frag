@@ -4,13 +4,12 @@
 uniform sampler2DArray first_depths;
 uniform sampler2DArray second_depths;  // 1 where there is no second surface
 
-layout(push_constant) uniform LayerBlock { uint face; } layer;
+layout(push_constant) uniform LayerBlock { uint view; } layer;
 
 // How far the map may lie behind the first surface, m.
-float greatest_offset(float first) {
-  MapFace face = map.faces[layer.face];
-  float distance = map.range.x + first / map.range.z;
-  float texel = face.forward.w * (face.origin.w > 0.5 ? distance : 1.0);
+float greatest_offset(MapView view, float first) {
+  float distance = view.range.x + first / view.range.z;
+  float texel = texel_size(view, distance) * widest_texel(spread_at(view, gl_FragCoord.xy));
   // auto: as much again as receivers are granted, see granted_texels. dual-depth: what a facet spans
   // over the kernel that rises four units for each across.
   float texels = parameter_bias_strategy == bias_strategy_auto ? 0.5 + 0.25 * map.texel.y
@@ -19,14 +18,16 @@ float greatest_offset(float first) {
 }
 
 void main() {
-  ivec3 texel = ivec3(gl_FragCoord.xy, layer.face);
+  MapView view = map.views[layer.view];
+  ivec3 texel = ivec3(gl_FragCoord.xy, layer.view);
   float first = texelFetch(first_depths, texel, 0).r;
   float second = texelFetch(second_depths, texel, 0).r;
   float depth = 0.5 * (first + second);  // midpoint
   if (parameter_bias_strategy == bias_strategy_second_depth) depth = second;
   if (parameter_bias_strategy == bias_strategy_dual_depth ||
       parameter_bias_strategy == bias_strategy_auto)
-    depth = min(depth, first + greatest_offset(first) * map.range.z);
-  float bias = map.texel.z + map.texel.w * coding_error(map.range.x + depth / map.range.z);
-  gl_FragDepth = coded_depth(clamp(depth + bias * map.range.z, 0.0, 1.0));
+    depth = min(depth, first + greatest_offset(view, first) * view.range.z);
+  float bias =
+      view.range.w + map.texel.w * coding_error(view.range, view.range.x + depth / view.range.z);
+  gl_FragDepth = coded_depth(view.range, clamp(depth + bias * view.range.z, 0.0, 1.0));
 }

@@ -10,14 +10,6 @@
 namespace penumbra::shadow_maps {
 namespace {
 
-/// Half angle of the widest spot light that is served by one view, degrees.
-constexpr double widest_single_view = 75.0;
-
-struct Axes {
-  glm::dvec3 forward;
-  glm::dvec3 up;
-};
-
 /// Clip matrix with w as the distance along forward; z is unused, since depth is written by shader.
 glm::mat4 clip_matrix(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& down,
                       const glm::dvec3& forward, bool perspective) {
@@ -38,38 +30,81 @@ glm::mat4 clip_matrix(const glm::dvec3& origin, const glm::dvec3& right, const g
   return glm::mat4(clip);
 }
 
-shader::MapFace make_face(const glm::dvec3& origin, const Axes& axes, double half_width,
-                          double half_height, bool perspective, double size) {
-  const glm::dvec3 right = glm::cross(axes.forward, axes.up) * half_width;
-  const glm::dvec3 down = -axes.up * half_height;
-  shader::MapFace face{};
-  face.clip_from_world = clip_matrix(origin, right, down, axes.forward, perspective);
-  face.origin = glm::vec4(origin, perspective ? 1.0 : 0.0);
-  face.right = glm::vec4(right, 0.0);
-  face.up = glm::vec4(down, 0.0);
-  face.forward = glm::vec4(axes.forward, 2.0 * half_width / size);
-  return face;
-}
+/// Distances along a view's axis, m.
+struct DepthRange {
+  double near = std::numeric_limits<double>::infinity();
+  double far = -std::numeric_limits<double>::infinity();
+};
 
-/// Widens near..far by the part of a box between the face's side planes. A box that reaches past
-/// them would else begin behind the light.
-void extend_range(const shader::MapFace& face, const Bounds& box, const GpuScene& scene,
-                  double& near, double& far) {
+/// Widens the range by the part of a box between the view's side planes. A box that reaches past
+/// them would otherwise begin behind the light.
+void extend_range(const shader::MapView& view, const Bounds& box, const GpuScene& scene,
+                  DepthRange& range) {
   const Bounds world = scene.near_part(box);
   if (world.empty()) return;
-  const auto sides = side_planes(glm::dmat4(face.clip_from_world));
-  const glm::dvec3 origin(face.origin);
-  if (contains(world, origin)) near = std::min(near, 0.0);
+  const auto sides = side_planes(glm::dmat4(view.clip_from_world));
+  const glm::dvec3 origin(view.origin);
+  if (contains(world, origin)) range.near = std::min(range.near, 0.0);
   visit_clipped_corners(world, sides, [&](const glm::dvec3& point) {
-    const double distance = glm::dot(point - origin, glm::dvec3(face.forward));
-    near = std::min(near, distance);
-    far = std::max(far, distance);
+    const double distance = glm::dot(point - origin, glm::dvec3(view.forward));
+    range.near = std::min(range.near, distance);
+    range.far = std::max(range.far, distance);
   });
 }
 
-/// What a directional light's map covers: the whole scene, or what is seen of it where it reaches
-/// too far.
-Bounds covered(const GpuScene& scene, const LightFit& fit) {
+/// Begins at the first box of either kind and ends at the last receiver: what lies behind it
+/// shadows nothing.
+DepthRange range_of(const shader::MapView& view, const GpuScene& scene, const LightFit& fit) {
+  DepthRange casters, receivers;
+  for (const Bounds& box : fit.casters) extend_range(view, box, scene, casters);
+  for (const Bounds& box : fit.receivers) extend_range(view, box, scene, receivers);
+  return {std::min(casters.near, receivers.near), receivers.far};
+}
+
+void set_fitted_range(shader::MapView& view, DepthRange range) {
+  const bool perspective = view.origin.w > 0.5f;
+  if (!(range.far > 0.0)) range.far = 1.0;  // nothing before the light
+  // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.
+  const double near = std::clamp(range.near, perspective ? 1e-4 * range.far : 0.0, range.far);
+  const double margin = 1e-4 * std::max(range.far - near, 1e-3 * range.far);
+  set_range(view, static_cast<float>(std::max(near - margin, 0.0)),
+            static_cast<float>(range.far + margin));
+}
+
+}  // namespace
+
+shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double half_width,
+                          bool perspective, double size) {
+  const glm::dvec3 right = axes.right() * half_width;
+  const glm::dvec3 down = -axes.up * half_width;
+  shader::MapView view{};
+  view.clip_from_world = clip_matrix(origin, right, down, axes.forward, perspective);
+  view.origin = glm::vec4(origin, perspective ? 1.0 : 0.0);
+  view.right = glm::vec4(right, 0.0);
+  view.up = glm::vec4(down, 0.0);
+  view.forward = glm::vec4(axes.forward, 2.0 * half_width / size);
+  for (int column = 0; column < 3; ++column) view.unwarp[column][column] = 1.0f;
+  return view;
+}
+
+void warp_view(shader::MapView& view, const glm::dmat3& warp, double size) {
+  const glm::dmat4 clip(view.clip_from_world);
+  for (int column = 0; column < 4; ++column) {
+    const glm::dvec3 bent = warp * glm::dvec3(clip[column].x, clip[column].y, clip[column].w);
+    view.clip_from_world[column] = glm::vec4(bent.x, bent.y, clip[column].z, bent.z);
+  }
+  const glm::dmat3 texels_from_clip(0.5 * size, 0.0, 0.0, 0.0, 0.5 * size, 0.0, 0.5 * size,
+                                    0.5 * size, 1.0);
+  const glm::dmat3 unwarp = texels_from_clip * glm::inverse(warp) * glm::inverse(texels_from_clip);
+  for (int column = 0; column < 3; ++column) view.unwarp[column] = glm::vec4(unwarp[column], 0.0);
+}
+
+double guard_share(const MapUse& use, std::uint32_t size) {
+  // Up to a quarter of the view.
+  return std::min((use.border + 1.0) / size, 0.5 - 0.5 / widest_filtered_cone);
+}
+
+Bounds covered_box(const GpuScene& scene, const LightFit& fit) {
   const Bounds whole{scene.low(), scene.high()};
   if (!scene.is_far()) return whole;
   Bounds seen;
@@ -78,8 +113,8 @@ Bounds covered(const GpuScene& scene, const LightFit& fit) {
   return seen.empty() ? whole : seen;
 }
 
-Bounds bounds_along(const Bounds& box, const Axes& axes) {
-  const glm::dvec3 right = glm::cross(axes.forward, axes.up);
+Bounds bounds_along(const Bounds& box, const ViewAxes& axes) {
+  const glm::dvec3 right = axes.right();
   Bounds bounds;
   const glm::dvec3 low = box.low;
   const glm::dvec3 high = box.high;
@@ -91,58 +126,23 @@ Bounds bounds_along(const Bounds& box, const Axes& axes) {
   return bounds;
 }
 
-/// A wide cone's one view would have few texels left for its middle, and none beyond a right angle.
-bool has_six_faces(const WorldLight& light) {
-  return light.kind == LightKind::point ||
-         (light.kind == LightKind::spot && light.source->outer_angle > widest_single_view);
+void set_range(shader::MapView& view, float near, float far) {
+  view.range = {near, far, 1.0f / (far - near), view.range.w};
 }
 
-}  // namespace
-
-std::uint32_t face_count(const Light& light) {
-  return light.kind == LightKind::point ? 6 : 1;
-}
-
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const LightFit& fit,
-                         std::uint32_t map_size, double guard) {
-  LightView view;
-  const double widen = 1.0 / (1.0 - 2.0 * guard);
-  double near = std::numeric_limits<double>::infinity();
-  double far = -near;
-  if (light.kind == LightKind::directional) {
-    const Axes axes{light.direction, light.up};
-    const glm::dvec3 right = glm::cross(axes.forward, axes.up);
-    const Bounds bounds = bounds_along(covered(scene, fit), axes);
-    const glm::dvec3 center = bounds.center();
-    const double half = std::max(0.5 * std::max(bounds.size().x, bounds.size().y), 1e-6) * widen;
-    const glm::dvec3 origin = center.x * right + center.y * axes.up + bounds.low.z * axes.forward;
-    view.faces.push_back(make_face(origin, axes, half, half, false, map_size));
-  } else {
-    std::vector<Axes> axes{{light.direction, light.up}};
-    double tangent = std::tan(glm::radians(light.source->outer_angle));
-    if (has_six_faces(light)) {
-      axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
-              {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
-      tangent = 1.0;
+void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit,
+                bool common) {
+  std::vector<DepthRange> ranges;
+  for (const shader::MapView& view : views) ranges.push_back(range_of(view, scene, fit));
+  if (common) {
+    DepthRange all;
+    for (const DepthRange& range : ranges) {
+      all.near = std::min(all.near, range.near);
+      all.far = std::max(all.far, range.far);
     }
-    const double half = tangent * widen;
-    for (const Axes& face_axes : axes)
-      view.faces.push_back(make_face(light.position, face_axes, half, half, true, map_size));
+    ranges.assign(ranges.size(), all);
   }
-  // Depth begins at the first box of either kind and ends at the last receiver: what lies behind it
-  // shadows nothing.
-  double unused = -near;
-  for (const shader::MapFace& face : view.faces) {
-    for (const Bounds& box : fit.casters) extend_range(face, box, scene, near, unused);
-    for (const Bounds& box : fit.receivers) extend_range(face, box, scene, near, far);
-  }
-  if (!(far > 0.0)) far = 1.0;  // nothing before the light
-  // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.
-  near = std::clamp(near, light.kind == LightKind::directional ? 0.0 : 1e-4 * far, far);
-  const double margin = 1e-4 * std::max(far - near, 1e-3 * far);
-  view.near_distance = static_cast<float>(std::max(near - margin, 0.0));
-  view.far_distance = static_cast<float>(far + margin);
-  return view;
+  for (std::size_t i = 0; i < views.size(); ++i) set_fitted_range(views[i], ranges[i]);
 }
 
 }  // namespace penumbra::shadow_maps

@@ -2,29 +2,45 @@
 
 #include <vector>
 
-#include "renderer/frame/light_points.h"
-#include "renderer/scene/gpu_scene.h"
-#include "renderer/shaders/shader_types.h"
+#include "renderer/shadow_maps/layout.h"
 
+/// What layouts make their views of.
 namespace penumbra::shadow_maps {
 
-/// How a light sees the scene: one face for spot and directional lights, six for point lights and
-/// wide spot lights.
-struct LightView {
-  std::vector<shader::MapFace> faces;
-  float near_distance = 0.0f;  ///< metres along a face's forward axis
-  float far_distance = 1.0f;
+/// Where a view looks, and what is up on it.
+struct ViewAxes {
+  glm::dvec3 forward;
+  glm::dvec3 up;
+  glm::dvec3 right() const { return glm::cross(forward, up); }
 };
 
-/// Faces of a light's view.
-std::uint32_t face_count(const Light& light);
+/// A view without a range yet, `half_width` to each side: metres for parallel rays, tangents for
+/// those from one point. `size` in texels.
+shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double half_width,
+                          bool perspective, double size);
 
-/// Fits the view to what the scene needs: a spot light's cone, the scene's box for a directional
-/// light; within the side planes from the nearest of `fit`'s boxes to its farthest receiver (van
-/// Sambeek 2007, 2.2.3). Casters before near are clamped to it when drawn with depth clamp, and so
-/// are those beyond far, which shadow nothing. `guard` widens the map by this share of its width on
-/// each side, room for filter kernels.
-LightView fit_light_view(const GpuScene& scene, const WorldLight& light, const LightFit& fit,
-                         std::uint32_t map_size, double guard);
+/// Bends the plane across the view's axis: the view's clip coordinates x, y, w are multiplied by
+/// `warp`. w stays above 0 over what is to be seen.
+void warp_view(shader::MapView& view, const glm::dmat3& warp, double size);
+
+/// Share of its width by which a view is widened on each side for the filter.
+double guard_share(const MapUse& use, std::uint32_t size);
+
+/// What a directional light's views may have to cover: the whole scene, or what is seen of it where
+/// it reaches too far.
+Bounds covered_box(const GpuScene& scene, const LightFit& fit);
+
+/// Bounds of a box along the axes: x right, y up, z forward.
+Bounds bounds_along(const Bounds& box, const ViewAxes& axes);
+
+/// Gives views the range that the scene needs: within a view's side planes from the nearest of
+/// `fit`'s boxes to its farthest receiver (van Sambeek 2007, 2.2.3). Casters before near are
+/// clamped to it when drawn with depth clamp, and so are those beyond far, which shadow nothing.
+/// `common`: one range for all.
+void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit,
+                bool common);
+
+/// The range of a view from near to far, m along its axis.
+void set_range(shader::MapView& view, float near, float far);
 
 }  // namespace penumbra::shadow_maps

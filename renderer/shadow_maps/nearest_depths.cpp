@@ -18,7 +18,7 @@ void NearestDepths::require(const TechniqueInput& input, Requirements& needs) {
   const std::uint32_t base =
       base_of(static_cast<std::uint32_t>(integer_of(input.parameters, "map_size")));
   needs.memory.push_back({"nearest depths",
-                          std::uint64_t{2} * base * base * face_count(input.light) *
+                          std::uint64_t{2} * base * base * view_count(input) *
                               vulkan::texel_bytes(VK_FORMAT_R32_SFLOAT),
                           2 * base});
 }

@@ -19,7 +19,7 @@ float nearest_depth(MapPoint point, float radius) {
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 3; ++x) {
       ivec2 texel = clamp(first + ivec2(x, y), ivec2(0), last) + level_offset(level, base);
-      nearest = min(nearest, texelFetch(nearest_depths, ivec3(texel, point.face), 0).r);
+      nearest = min(nearest, texelFetch(nearest_depths, ivec3(texel, point.view), 0).r);
     }
   return nearest;
 }

@@ -17,7 +17,8 @@ void PrefilteredMap::require(const TechniqueInput& input, const BlurSettings& se
 
 void PrefilteredMap::draw(PrepareContext& context, const BlurSettings& settings) {
   // A sampler interpolates: it reads half a texel beyond the blur.
-  depth_.draw(context, static_cast<double>(integer_of(context.input.parameters, "blur")) + 0.5);
+  const auto blur = static_cast<double>(integer_of(context.input.parameters, "blur"));
+  depth_.draw(context, {.kernel_radius = blur + 0.5, .common_range = true});
   blurred_.draw(context, depth_, settings);
 }
 

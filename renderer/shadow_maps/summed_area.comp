@@ -16,19 +16,19 @@ uniform sampler2DArray shadow_map;
 
 shared TableSum sums[parts * lines];
 
-int entry(int line, int place, int face) {
+int entry(int line, int place, int view) {
 #ifdef COLUMNS
-  return (face * table.size + place) * table.size + line;
+  return (view * table.size + place) * table.size + line;
 #else
-  return (face * table.size + line) * table.size + place;
+  return (view * table.size + line) * table.size + place;
 #endif
 }
 
-TableSum value_of(int line, int place, int face) {
+TableSum value_of(int line, int place, int view) {
 #ifdef COLUMNS
-  return summed_area[entry(line, place, face)];
+  return summed_area[entry(line, place, view)];
 #else
-  float depth = texelFetch(shadow_map, ivec3(place, line, face), 0).r;
+  float depth = texelFetch(shadow_map, ivec3(place, line, view), 0).r;
   return table_value(vec2(depth, depth * depth));
 #endif
 }
@@ -36,20 +36,20 @@ TableSum value_of(int line, int place, int face) {
 void main() {
   int lane = int(gl_LocalInvocationID.x);
   int part = int(gl_LocalInvocationID.y);
-  int face = int(gl_WorkGroupID.y);
+  int view = int(gl_WorkGroupID.y);
   int line = int(gl_WorkGroupID.x) * lines + lane;
   int length = (table.size + parts - 1) / parts;
   int first = part * length;
   int end = line < table.size ? min(first + length, table.size) : first;
 
   TableSum sum = TableSum(0);
-  for (int place = first; place < end; ++place) sum += value_of(line, place, face);
+  for (int place = first; place < end; ++place) sum += value_of(line, place, view);
   sums[part * lines + lane] = sum;
   barrier();
   sum = TableSum(0);
   for (int before = 0; before < part; ++before) sum += sums[before * lines + lane];
   for (int place = first; place < end; ++place) {
-    sum += value_of(line, place, face);
-    summed_area[entry(line, place, face)] = sum;
+    sum += value_of(line, place, view);
+    summed_area[entry(line, place, view)] = sum;
   }
 }

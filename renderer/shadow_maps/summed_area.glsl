@@ -6,22 +6,22 @@
 
 layout(std430) readonly buffer SummedAreaBlock { TableSum summed_area[]; };
 
-/// Sum over all texels of a face before `corner` along both sides.
-TableSum sum_before(ivec2 corner, int face, int size) {
+/// Sum over all texels of a view before `corner` along both sides.
+TableSum sum_before(ivec2 corner, int view, int size) {
   if (any(lessThanEqual(corner, ivec2(0)))) return TableSum(0);
-  return summed_area[(face * size + corner.y - 1) * size + corner.x - 1];
+  return summed_area[(view * size + corner.y - 1) * size + corner.x - 1];
 }
 
 /// Sum over the texels from `low` up to, but not with, `high`. Whole numbers wrap, which differences
 /// undo.
-TableSum sum_of_rectangle(ivec2 low, ivec2 high, int face, int size) {
-  return sum_before(high, face, size) - sum_before(ivec2(low.x, high.y), face, size) -
-         sum_before(ivec2(high.x, low.y), face, size) + sum_before(low, face, size);
+TableSum sum_of_rectangle(ivec2 low, ivec2 high, int view, int size) {
+  return sum_before(high, view, size) - sum_before(ivec2(low.x, high.y), view, size) -
+         sum_before(ivec2(high.x, low.y), view, size) + sum_before(low, view, size);
 }
 
 /// Mean moments over `width` x `width` texels around a place in texels, interpolated between the four
 /// rectangles of whole texels that lie nearest: 16 reads. Texels beyond the border do not count.
-vec2 mean_moments(vec2 place, int face, int size, int width) {
+vec2 mean_moments(vec2 place, int view, int size, int width) {
   vec2 corner = place - 0.5 * float(width);
   ivec2 first = ivec2(floor(corner));
   vec2 share = corner - vec2(first);
@@ -32,7 +32,7 @@ vec2 mean_moments(vec2 place, int face, int size, int width) {
     float weight = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
     ivec2 low = clamp(first + step, ivec2(0), ivec2(size));
     ivec2 high = clamp(first + step + width, ivec2(0), ivec2(size));
-    sum += weight * moments_of_sum(sum_of_rectangle(low, high, face, size));
+    sum += weight * moments_of_sum(sum_of_rectangle(low, high, view, size));
     area += weight * float((high.x - low.x) * (high.y - low.y));
   }
   return sum / max(area, 1e-6);

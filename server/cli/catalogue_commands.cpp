@@ -3,6 +3,7 @@
 #include "server/cli/session.h"
 #include "server/cli/table.h"
 #include "server/jobs/catalogue.h"
+#include "techniques/layout_matrix.h"
 
 namespace penumbra::server::cli {
 namespace {
@@ -66,6 +67,27 @@ int list_techniques(const Session& session) {
   return 0;
 }
 
+/// Which lights each technique draws with each layout of its map.
+int list_layouts(const Session& session) {
+  const auto rows = techniques::layout_matrix();
+  json document = json::array();
+  std::vector<std::string> head{"technique"};
+  for (const auto& [layout, lights] : rows.front().lights) head.push_back(layout);
+  Table table{head};
+  for (const techniques::LayoutRow& row : rows) {
+    document.push_back({{"technique", row.technique}, {"layouts", row.lights}});
+    std::vector<std::string> cells{row.technique};
+    for (const auto& [layout, lights] : row.lights) {
+      std::string names;
+      for (const std::string& light : lights) names += (names.empty() ? "" : ", ") + light;
+      cells.push_back(names.empty() ? "-" : names);
+    }
+    table.add(cells);
+  }
+  session.print({{"matrix", document}}, table.text(true));
+  return 0;
+}
+
 }  // namespace
 
 void add_catalogue_commands(CLI::App& app, Session& session) {
@@ -79,9 +101,14 @@ void add_catalogue_commands(CLI::App& app, Session& session) {
 
   CLI::App* techniques =
       app.add_subcommand("techniques", "List techniques, parameters and presets");
+  auto matrix = std::make_shared<bool>(false);
+  techniques->add_flag("--matrix", *matrix, "Lights that each technique draws with each layout");
   add_json_flag(*techniques, session);
-  techniques->callback(
-      [&session] { session.action = [&session] { return list_techniques(session); }; });
+  techniques->callback([matrix, &session] {
+    session.action = [matrix, &session] {
+      return *matrix ? list_layouts(session) : list_techniques(session);
+    };
+  });
 }
 
 }  // namespace penumbra::server::cli

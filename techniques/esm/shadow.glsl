@@ -21,7 +21,7 @@ float farthest_depth(MapPoint point) {
   float farthest = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 texel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), last);
-    farthest = max(farthest, texelFetch(farthest_map, ivec3(texel, point.face), 0).r);
+    farthest = max(farthest, texelFetch(farthest_map, ivec3(texel, point.view), 0).r);
   }
   return farthest;
 }
@@ -31,24 +31,23 @@ float farthest_depth(MapPoint point) {
 // (Adorjan 2013, 2.2.2). Judged without any bias: the map's own is taken back.
 bool assumption_fails(MapPoint point, float stored) {
   if (parameter_fallback == fallback_none) return false;
-  float logarithm = parameter_c * depth_of_distance(point.distance + map.texel.z);
+  float logarithm = parameter_c * depth_of_distance(point, point.distance + point.range.w);
 #ifdef variant_fallback_z_max
   stored = parameter_c * farthest_depth(point);
 #endif
   return stored - logarithm > log(1.0 + parameter_threshold);
 }
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, float(parameter_blur));
-  if (point.face < 0) return 1.0;
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, float(parameter_blur));
   float stored = filtered_logarithm(query, point);
   if (!is_finite(vec4(stored))) return overflow();
-  if (assumption_fails(point, stored)) return mean_of_box(locate(query, 0.5), 2);
+  if (assumption_fails(point, stored)) return mean_of_box(locate(query, view, 0.5), 2);
   // Over a slope the mean of exponentials is greater than that of the middle: no further bias is needed.
-  return min(exp(stored - parameter_c * depth_of_distance(point.distance)), 1.0);
+  return min(exp(stored - parameter_c * depth_of_distance(point, point.distance)), 1.0);
 }
 
-// First face: the logarithm of what is stored, over c; magenta where it is no finite number.
+// First view: the logarithm of what is stored, over c; magenta where it is no finite number.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   float stored = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0).r;
   if (!is_finite(vec4(stored))) return vec4(1.0, 0.0, 1.0, 1.0);
@@ -58,8 +57,9 @@ vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
 
 // Where percentage-closer filtering takes over: red over the grey of what is seen.
 vec4 draw_diagnostic_fallback(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, float(parameter_blur));
-  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  MapPoint point = locate(query, view, float(parameter_blur));
   float lit = calculate_shadow(query);
   if (!is_finite(vec4(lit))) return vec4(1.0, 0.0, 1.0, 1.0);
   bool fails = assumption_fails(point, filtered_logarithm(query, point));

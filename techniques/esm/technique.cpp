@@ -117,6 +117,7 @@ TechniqueDescription describe_esm() {
   description.parameters = esm_parameters();
   description.diagnostics = {
       shadow_maps::map_diagnostic(),
+      shadow_maps::views_diagnostic(),
       {"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
       {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
       shadow_maps::mip_level_diagnostic()};

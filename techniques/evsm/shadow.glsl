@@ -13,19 +13,18 @@ float negative_bound(vec2 moments, float depth, float deviation) {
   return upper_bound(moments, warped, -parameter_c_negative * warped * deviation);
 }
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, float(parameter_blur));
-  if (point.face < 0) return 1.0;
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, float(parameter_blur));
   vec4 moments = read_blurred(query, point);
   if (!is_finite(moments)) return overflow();
-  float depth = depth_of_distance(point.distance - point.grant);
+  float depth = depth_of_distance(point, point.distance - point.grant);
   float deviation = parameter_minimum_deviation;
   float lit = positive_bound(moments.xy, depth, deviation);
   if (parameter_components == components_4) lit = min(lit, negative_bound(moments.zw, depth, deviation));
   return reduce_bleeding(lit);
 }
 
-// First face: logarithms of both means as depths, positive red and negative green; magenta where a
+// First view: logarithms of both means as depths, positive red and negative green; magenta where a
 // moment is no finite number.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   vec4 moments = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0);

@@ -77,6 +77,7 @@ TechniqueDescription describe_evsm() {
   description.parameters = evsm_parameters();
   description.diagnostics = {
       shadow_maps::map_diagnostic(),
+      shadow_maps::views_diagnostic(),
       {"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
       shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/evsm/shadow.glsl";

@@ -13,6 +13,17 @@ layout(std430) buffer SampleCountBlock {
 
 layout(location = 0) out float out_mask;
 
+// Share of the nearest texels that leave the sample lit.
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, float(parameter_reach));
+  ivec2 corner = ivec2(floor(point.texel - 0.5)) - (parameter_reach - 1);
+  int side = 2 * parameter_reach;
+  float lit = 0.0;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) lit += compare_texel(point, corner + ivec2(x, y));
+  return lit / float(side * side);
+}
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
@@ -33,17 +44,8 @@ void main() {
   query.light_distance = incoming.distance;
   query.pixel = gl_FragCoord.xy;
   query.point = 0;
-  MapPoint point = locate(query, float(parameter_reach));
-  if (point.face < 0) {
-    out_mask = mask_lit;
-    return;
-  }
-  ivec2 corner = ivec2(floor(point.texel - 0.5)) - (parameter_reach - 1);
-  int side = 2 * parameter_reach;
-  float lit = 0.0;
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) lit += compare_texel(point, corner + ivec2(x, y));
-  out_mask = lit == 0.0 ? mask_dark : lit == float(side * side) ? mask_lit : mask_silhouette;
+  float lit = calculate_shadow(query);
+  out_mask = lit == 0.0 ? mask_dark : lit == 1.0 ? mask_lit : mask_silhouette;
 #ifdef COUNT_SAMPLES
   if (out_mask == mask_silhouette) atomicAdd(silhouette_samples, 1u);
 #endif

@@ -20,7 +20,7 @@ class Hybrid : public Technique {
 
   void prepare(PrepareContext& context) override {
     if (!mask_) create(context);
-    map_.draw(context, reach(context));
+    map_.draw(context, {.kernel_radius = reach(context)});
     draw_mask(context);
     mark_silhouettes(context);
     shadow_volumes::VolumeOptions options =

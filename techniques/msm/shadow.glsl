@@ -38,11 +38,10 @@ float least_share_before(vec4 m, float z) {
   return 1.0 - weight_of(z, low, high, m);
 }
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, float(parameter_blur));
-  if (point.face < 0) return 1.0;
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, float(parameter_blur));
   vec4 moments = valid_moments(moments_of_texel(read_blurred(query, point)));
-  float depth = 2.0 * depth_of_distance(point.distance - point.grant) - 1.0;
+  float depth = 2.0 * depth_of_distance(point, point.distance - point.grant) - 1.0;
   float lit = clamp(1.0 - least_share_before(moments, depth), 0.0, 1.0);
   // The bias of moments leaves a little shadow on what is lit.
   const float nearly_lit = 0.98;
@@ -50,7 +49,7 @@ float calculate_shadow(ShadowQuery query) {
   return clamp((lit - reduction) / max(nearly_lit - reduction, 1e-3), 0.0, 1.0);
 }
 
-// First face: mean depth red, deviation from it green, ten times enlarged.
+// First view: mean depth red, deviation from it green, ten times enlarged.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   vec4 moments = moments_of_texel(texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0));
   float deviation = 0.5 * sqrt(max(moments.y - moments.x * moments.x, 0.0));

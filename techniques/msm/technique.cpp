@@ -67,6 +67,7 @@ TechniqueDescription describe_msm() {
   description.parameters = msm_parameters();
   description.diagnostics = {
       shadow_maps::map_diagnostic(),
+      shadow_maps::views_diagnostic(),
       {"moments", "Mean depth in red and ten times the deviation from it in green."},
       shadow_maps::mip_level_diagnostic()};
   description.shader = "techniques/msm/shadow.glsl";

@@ -15,7 +15,7 @@ float mean_of_hardware_bilinear(MapPoint point, int size) {
       float depth = 1.0;
       for (int corner = 0; corner < 4; ++corner)
         depth = min(depth, receiver_depth(point, first + ivec2(corner & 1, corner >> 1)));
-      lit += texture(shadow_map_compare, vec4(place / map.texel.x, float(point.face), depth));
+      lit += texture(shadow_map_compare, vec4(place / map.texel.x, float(point.view), depth));
     }
   }
   return lit / float(size * size);
@@ -33,14 +33,13 @@ float radius_of(int kernel) {
   return 0.5 * float(parameter_filter == filter_box ? kernel - 1 : kernel);
 }
 
-float calculate_shadow(ShadowQuery query) {
+float filter_view(ShadowQuery query, int view) {
   int kernel = parameter_kernel;
-  MapPoint point = locate(query, radius_of(kernel));
-  if (parameter_adaptive == 1 && point.face >= 0) {
+  MapPoint point = locate(query, view, radius_of(kernel));
+  if (parameter_adaptive == 1) {
     kernel = adaptive_kernel(query, point);
-    point = locate(query, radius_of(kernel));
+    point = locate(query, view, radius_of(kernel));
   }
-  if (point.face < 0) return 1.0;
   if (parameter_filter == filter_box) return mean_of_box(point, kernel);
   if (parameter_filter == filter_bilinear) return mean_of_bilinear(point, kernel);
   if (parameter_filter == filter_hardware_bilinear) return mean_of_hardware_bilinear(point, kernel);

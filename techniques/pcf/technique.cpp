@@ -70,7 +70,7 @@ class PercentageCloserFilter : public Technique {
         static_cast<double>(adaptive ? largest_kernel : integer_of(parameters, "kernel"));
     // Box taps are whole texels; the others may fall between them.
     const bool whole = choice_of(parameters, "filter") == "box";
-    map_.draw(context, 0.5 * (whole ? kernel - 1.0 : kernel));
+    map_.draw(context, {.kernel_radius = 0.5 * (whole ? kernel - 1.0 : kernel)});
   }
 
   void bind(vulkan::Bindings& bindings) const override {
@@ -93,7 +93,7 @@ TechniqueDescription describe_pcf() {
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.4; Reeves, Salesin and Cook 1987";
   description.parameters = pcf_parameters();
-  description.diagnostics = {shadow_maps::map_diagnostic()};
+  description.diagnostics = {shadow_maps::map_diagnostic(), shadow_maps::views_diagnostic()};
   description.shader = "techniques/pcf/shadow.glsl";
   description.create = [] { return std::make_unique<PercentageCloserFilter>(); };
   return description;

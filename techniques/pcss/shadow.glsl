@@ -13,20 +13,24 @@ struct ExtentOnMap {
   bool square;  // rectangle; otherwise round
 };
 
-ExtentOnMap extent_on_map(int face_index) {
-  MapFace face = map.faces[face_index];
+ExtentOnMap extent_on_map(MapPoint point) {
+  MapView view = map.views[point.view];
   vec2 half_size = light.extent.yz;
   bool square = int(light.extent.x) == 3;  // rectangle
   if (!square) half_size = light.extent.yy;
   // Round extents look alike from everywhere; a rectangle lies along its own axes.
-  vec3 along_right = square ? light.right.xyz : normalize(face.right.xyz);
-  vec3 along_up = square ? light.up.xyz : normalize(face.up.xyz);
+  vec3 along_right = square ? light.right.xyz : normalize(view.right.xyz);
+  vec3 along_up = square ? light.up.xyz : normalize(view.up.xyz);
   vec2 texels = 0.5 * map.texel.x /
-                vec2(dot(face.right.xyz, face.right.xyz), dot(face.up.xyz, face.up.xyz));
+                vec2(dot(view.right.xyz, view.right.xyz), dot(view.up.xyz, view.up.xyz));
   ExtentOnMap extent;
   extent.right = half_size.x * texels *
-                 vec2(dot(along_right, face.right.xyz), dot(along_right, face.up.xyz));
-  extent.up = half_size.y * texels * vec2(dot(along_up, face.right.xyz), dot(along_up, face.up.xyz));
+                 vec2(dot(along_right, view.right.xyz), dot(along_right, view.up.xyz));
+  extent.up = half_size.y * texels * vec2(dot(along_up, view.right.xyz), dot(along_up, view.up.xyz));
+  // A warp is followed as it is at the receiver.
+  mat2 warp = inverse(point.spread.texels);
+  extent.right = warp * extent.right;
+  extent.up = warp * extent.up;
   extent.world_right = half_size.x * along_right;
   extent.world_up = half_size.y * along_up;
   extent.square = square;
@@ -37,7 +41,7 @@ ExtentOnMap extent_on_map(int face_index) {
 // light: divided by d, where a texel is one unit wide. Directional light: both without the division.
 float reach(MapPoint point, float blocker) {
   float gap = max(point.distance - blocker, 0.0);
-  return map.faces[point.face].origin.w > 0.5 ? gap / (blocker * point.distance) : gap;
+  return map.views[point.view].origin.w > 0.5 ? gap / (blocker * point.distance) : gap;
 }
 
 float texels_of(ExtentOnMap extent, float reach) {
@@ -59,9 +63,9 @@ ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
 // How far casters that may block the light lie from the receiver's place: what stands in a region
 // bounds how wide the region need be, and so on until it shrinks no more.
 float reach_of_casters(MapPoint point, ExtentOnMap extent) {
-  float widest = reach(point, map.range.x);
+  float widest = reach(point, point.range.x);
   for (int round = 0; round < 4; ++round) {
-    float nearest = distance_of_depth(nearest_depth(point, texels_of(extent, widest) + 1.0));
+    float nearest = distance_of_depth(point, nearest_depth(point, texels_of(extent, widest) + 1.0));
     widest = min(widest, reach(point, nearest));
   }
   return widest;
@@ -85,7 +89,7 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
     ivec2 texel = texel_at(point, extent, tap, widest);
     float stored = fetch_depth(point, texel);
     if (receiver_depth(point, texel) <= stored) continue;
-    float distance = distance_of_depth(stored);
+    float distance = distance_of_depth(point, stored);
     // A tap stands for an area: the inverse of the taps' density there.
     float share = 1.0 / (1.0 + 0.25 * pow(max(away, 1e-4), -1.5));
     sum += share * distance;
@@ -117,12 +121,11 @@ float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
   return risen / float(parameter_taps);
 }
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, 0.5);
-  if (point.face < 0) return 1.0;
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, 0.5);
   // A light without extent casts no penumbra.
   if (int(light.extent.x) == 0) return mean_of_bilinear(point, 1);
-  ExtentOnMap extent = extent_on_map(point.face);
+  ExtentOnMap extent = extent_on_map(point);
   float rotation = tap_rotation(query.pixel);
   float risen = risen_share(query, extent, rotation);
   float blocker = find_blocker(point, extent, rotation);
@@ -132,7 +135,7 @@ float calculate_shadow(ShadowQuery query) {
   // Below a texel the map knows no more than its own interpolation.
   if (radius < 1.0) return risen * mean_of_bilinear(point, 1);
   // The bias of a wide kernel would let light in where a wall meets the ground.
-  point = locate(query, min(radius, 2.0));
+  point = locate(query, view, min(radius, 2.0));
   // A narrow facet's plane soon leads away from its body, through what shadows it: halfway to the
   // blockers it is left.
   point.nearest = 0.5 * (point.distance + blocker);
@@ -147,17 +150,19 @@ float calculate_shadow(ShadowQuery query) {
 
 // Found by the search: the blocker's depth in the map's range, black where there is none.
 vec4 draw_diagnostic_blocker_depth(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 0.5);
-  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
-  float blocker = find_blocker(point, extent_on_map(point.face), tap_rotation(query.pixel));
-  return vec4(vec3(blocker < 0.0 ? 0.0 : max(depth_of_distance(blocker), 0.05)), 1.0);
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  MapPoint point = locate(query, view, 0.5);
+  float blocker = find_blocker(point, extent_on_map(point), tap_rotation(query.pixel));
+  return vec4(vec3(blocker < 0.0 ? 0.0 : max(depth_of_distance(point, blocker), 0.05)), 1.0);
 }
 
 // Width of the filter, white at an eighth of the map.
 vec4 draw_diagnostic_penumbra_width(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 0.5);
-  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
-  ExtentOnMap extent = extent_on_map(point.face);
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  MapPoint point = locate(query, view, 0.5);
+  ExtentOnMap extent = extent_on_map(point);
   float blocker = find_blocker(point, extent, tap_rotation(query.pixel));
   float width = blocker < 0.0 ? 0.0 : 2.0 * texels_of(extent, reach(point, blocker));
   return vec4(vec3(8.0 * width / map.texel.x), 1.0);

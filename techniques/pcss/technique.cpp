@@ -54,12 +54,14 @@ class PercentageCloserSoftShadows : public Technique {
   }
 
   void prepare(PrepareContext& context) override {
-    // Penumbrae reach over the map's border by their width at most; how wide they are is known only
-    // in the shader. A sixteenth of the map is room for wide ones; strategy slope covers small
-    // ones.
+    // Penumbrae reach over a view's border by their width at most; how wide they are is known only
+    // in the shader. A sixteenth of the view is room for wide ones, unless the layout knows better;
+    // strategy slope covers small ones.
     const bool soft = context.light.source->extent.kind != ExtentKind::none;
     const auto size = static_cast<double>(integer_of(context.input.parameters, "map_size"));
-    map_.draw(context, soft ? 4.0 : 0.5, soft ? size / 16.0 : 0.5);
+    map_.draw(context, {.kernel_radius = soft ? 4.0 : 0.5,
+                        .border = soft ? size / 16.0 : 0.5,
+                        .follows_extent = soft});
     nearest_.draw(context, map_);
   }
 
@@ -86,6 +88,7 @@ TechniqueDescription describe_pcss() {
   description.parameters = pcss_parameters();
   description.diagnostics = {
       shadow_maps::map_diagnostic(),
+      shadow_maps::views_diagnostic(),
       {"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
       {"penumbra-width", "Width of the filter; white is an eighth of the map."}};
   description.shader = "techniques/pcss/shadow.glsl";

@@ -11,18 +11,17 @@ int filter_width(ShadowQuery query, MapPoint point) {
 }
 
 vec2 moments_at(ShadowQuery query, MapPoint point) {
-  return mean_moments(point.texel, point.face, int(map.texel.x), filter_width(query, point));
+  return mean_moments(point.texel, point.view, int(map.texel.x), filter_width(query, point));
 }
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, 0.5 * float(parameter_kernel));
-  if (point.face < 0) return 1.0;
-  float depth = depth_of_distance(point.distance - point.grant);
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, 0.5 * float(parameter_kernel));
+  float depth = depth_of_distance(point, point.distance - point.grant);
   float deviation = parameter_minimum_deviation;
   return reduce_bleeding(upper_bound(moments_at(query, point), depth, deviation));
 }
 
-// First face: mean depth over one texel as the table has it, red; over the kernel green; what the map
+// First view: mean depth over one texel as the table has it, red; over the kernel green; what the map
 // holds blue. All alike where the table is precise and the map flat.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   int size = int(map.texel.x);
@@ -35,8 +34,9 @@ vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
 
 // By their logarithms, full at the widest: texels that a pixel covers red, width of the filter green.
 vec4 draw_diagnostic_filter_width(ShadowQuery query, vec2 picture) {
-  MapPoint point = locate(query, 0.0);
-  if (query.point < 0 || point.face < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  MapPoint point = locate(query, view, 0.0);
   vec2 widths = vec2(footprint_width(map_footprint(query, point)), float(filter_width(query, point)));
   return vec4(log2(widths + 1.0) / log2(float(largest_width) + 1.0), 0.0, 1.0);
 }

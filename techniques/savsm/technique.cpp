@@ -23,7 +23,8 @@ class SummedAreaVarianceShadowMap : public Technique {
 
   void prepare(PrepareContext& context) override {
     const std::int64_t kernel = integer_of(context.input.parameters, "kernel");
-    depth_.draw(context, 0.5 * static_cast<double>(kernel));
+    depth_.draw(context,
+                {.kernel_radius = 0.5 * static_cast<double>(kernel), .common_range = true});
     table_.draw(context, depth_);
   }
 
@@ -50,6 +51,7 @@ TechniqueDescription describe_savsm() {
   description.parameters = savsm_parameters();
   description.diagnostics = {
       shadow_maps::map_diagnostic(),
+      shadow_maps::views_diagnostic(),
       {"moments",
        "Mean depth by the table: of one texel red, of the kernel green; the map's own depth blue."},
       {"filter-width",

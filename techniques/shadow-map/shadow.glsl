@@ -2,7 +2,7 @@
 #include "renderer/shadow_maps/diagnostics.glsl"
 
 // One comparison with the texel that the receiver falls into.
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, 0.0);
-  return point.face < 0 ? 1.0 : compare_texel(point, ivec2(floor(point.texel)));
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, 0.0);
+  return compare_texel(point, ivec2(floor(point.texel)));
 }

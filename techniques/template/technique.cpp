@@ -15,7 +15,7 @@ class Template : public Technique {
   }
 
   /// Once per frame and batch of light points. Allocate on first use, draw inside context.pass.
-  void prepare(PrepareContext& context) override { map_.draw(context, 0.0); }
+  void prepare(PrepareContext& context) override { map_.draw(context, {}); }
 
   /// Every name that shadow.glsl reads, and no other.
   void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }

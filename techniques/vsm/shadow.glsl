@@ -2,15 +2,14 @@
 #include "renderer/shadow_maps/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 
-float calculate_shadow(ShadowQuery query) {
-  MapPoint point = locate(query, float(parameter_blur));
-  if (point.face < 0) return 1.0;
-  float depth = depth_of_distance(point.distance - point.grant);
+float filter_view(ShadowQuery query, int view) {
+  MapPoint point = locate(query, view, float(parameter_blur));
+  float depth = depth_of_distance(point, point.distance - point.grant);
   float deviation = parameter_minimum_deviation;
   return reduce_bleeding(upper_bound(read_blurred(query, point).rg, depth, deviation));
 }
 
-// First face: mean depth red, deviation from it green, ten times enlarged.
+// First view: mean depth red, deviation from it green, ten times enlarged.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   vec2 moments = textureLod(blurred_map, vec3(picture, 0.0), 0.0).rg;
   return vec4(moments.x, 10.0 * sqrt(max(moments.y - moments.x * moments.x, 0.0)), 0.0, 1.0);

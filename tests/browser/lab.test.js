@@ -99,6 +99,12 @@ test("on the bench a picture stands beside the reference and its error, with num
   await page.getByRole("link", { name: "Bench" }).click();
   await page.getByLabel("Scene", { exact: true }).selectOption("half-plane");
   await page.getByLabel("Technique", { exact: true }).selectOption("shadow-map");
+  // What only another layout reads is left out.
+  assert.equal(await page.getByLabel("cascades", { exact: true }).isVisible(), false);
+  await page.getByLabel("layout", { exact: true }).selectOption("cascaded");
+  assert.equal(await page.getByLabel("cascades", { exact: true }).isVisible(), true);
+  await page.getByLabel("layout", { exact: true }).selectOption("single");
+  assert.equal(await page.getByLabel("cascades", { exact: true }).isVisible(), false);
   await page.getByLabel("Width and height, pixels").fill("96");
   await page.getByLabel(/^Light samples/).fill("16");
   await page.getByRole("button", { name: "Render" }).click();

@@ -109,6 +109,17 @@ TEST_F(ProgramTest, lists_exactly_the_scenes_and_techniques_there_are) {
   EXPECT_THAT(run("techniques").out, HasSubstr("shadow-map"));
 }
 
+TEST_F(ProgramTest, tells_which_lights_each_layout_serves) {
+  const json rows = json::parse(run("techniques --matrix --json").out).at("matrix");
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [](const json& row) { return row.at("technique") == "pcf"; });
+  ASSERT_NE(found, rows.end());
+  EXPECT_EQ(found->at("layouts").at("single"), (json{"spot", "directional", "point"}));
+  EXPECT_EQ(found->at("layouts").at("cascaded"), json::array({"directional"}));
+  for (const json& row : rows) EXPECT_NE(row.at("technique"), "shadow-volumes");
+  EXPECT_THAT(run("techniques --matrix").out, HasSubstr("cascaded"));
+}
+
 TEST_F(ProgramTest, prints_one_json_document_also_when_it_fails) {
   const Outcome outcome = run("render boxes none --width 0 --json");
   EXPECT_EQ(outcome.status, 2);

@@ -238,13 +238,26 @@ INSTANTIATE_TEST_SUITE_P(Every, Conformance, testing::Range<std::size_t>(0, subj
                            return name;
                          });
 
+std::string text_of_page(const std::string& path) {
+  std::ifstream file(std::string(PENUMBRA_SOURCE_DIR) + "/" + path);
+  EXPECT_TRUE(file) << path << " is missing";
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The page of a technique, and those of the layouts whose parameters it shares.
+std::string pages_of(const TechniqueDescription& technique) {
+  std::string text = text_of_page("techniques/" + technique.id + "/README.md");
+  for (const Parameter& parameter : technique.parameters)
+    if (parameter.name == "layout")
+      for (const std::string& layout : parameter.choices)
+        text += "\n" + text_of_page("renderer/shadow_maps/layouts/" + layout + ".md");
+  return text;
+}
+
 // The page of a technique lists its parameters; a default that changed in the code only is found
 // here.
 TEST_P(Conformance, the_page_names_every_parameter_with_its_default) {
-  std::ifstream file(std::string(PENUMBRA_SOURCE_DIR) + "/techniques/" + technique().id +
-                     "/README.md");
-  ASSERT_TRUE(file) << "techniques/" << technique().id << "/README.md is missing";
-  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string page = pages_of(technique());
   for (std::size_t at = page.find("\n| `"); at != std::string::npos;
        at = page.find("\n| `", at + 1)) {
     const std::string row = page.substr(at + 1, page.find('\n', at + 1) - at - 1);

@@ -99,6 +99,14 @@ TEST(ParameterSchema, CarriesWhatAFormNeeds) {
                                           {"x-order", 2}}));
   EXPECT_EQ(properties.at("blur").at("enum"), (json{"box", "gauss"}));
   EXPECT_EQ(properties.at("bias").at("x-scale"), "linear");
+  EXPECT_FALSE(properties.at("bias").contains("x-only-with"));
+}
+
+TEST(ParameterSchema, TellsTheChoiceThatAParameterNeeds) {
+  std::vector<Parameter> list = declared();
+  list[1].only_with = Choice{"blur", "gauss"};
+  EXPECT_EQ(parameter_schema(list).at("properties").at("bias").at("x-only-with"),
+            (json{{"blur", "gauss"}}));
 }
 
 TEST(ParameterSchema, KeepsWholeLimitsWhole) {

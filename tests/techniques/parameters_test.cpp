@@ -142,6 +142,19 @@ TEST(CommonParameters, SayHowOftenColorsAreDecodedAndWhetherThePictureIsEncoded)
   EXPECT_EQ(treatment("input_twice"), std::pair(2, true));
 }
 
+TEST(Parameters, HaveAnEffectOnlyWithTheChoiceTheyNeed) {
+  std::vector<Parameter> list = declared();  // blur is box unless given
+  list.push_back({.name = "deviation",
+                  .default_value = 0.5,
+                  .meaning = "of the bell",
+                  .only_with = Choice{"blur", "gauss"}});
+  const Parameter& deviation = list.back();
+  EXPECT_FALSE(has_effect(deviation, list, {}));
+  EXPECT_FALSE(has_effect(deviation, list, {{"blur", std::string("box")}}));
+  EXPECT_TRUE(has_effect(deviation, list, {{"blur", std::string("gauss")}}));
+  EXPECT_TRUE(has_effect(list.front(), list, {}));
+}
+
 TEST(CommonParameters, HandleGammaCorrectlyUnlessAsked) {
   EXPECT_EQ(choice_of(complete_parameters(common_parameters(), {}), "gamma"), "correct");
 }

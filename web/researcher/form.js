@@ -41,6 +41,7 @@ export class ParameterForm {
   constructor(schema, values = {}, { prefix = "", sliders = false } = {}) {
     this.schema = schema;
     this.fields = new Map();
+    this.rows = new Map();
     const properties = Object.entries(schema.properties ?? {})
       .sort(([, a], [, b]) => (a["x-order"] ?? 0) - (b["x-order"] ?? 0));
     this.element = h("div", { class: "parameters" }, properties.map(([name, property]) => {
@@ -51,10 +52,14 @@ export class ParameterForm {
       const range = Number.isFinite(property.minimum) ? ` ${property.minimum} to ${property.maximum}` : "";
       const unit = property["x-unit"] ? ` ${property["x-unit"]}` : "";
       if (property.description) field.setAttribute("aria-describedby", `${id}-help`);
-      return h("div", { class: "parameter" }, h("label", { for: id }, name.replaceAll("_", " "),
+      const row = h("div", { class: "parameter" }, h("label", { for: id }, name.replaceAll("_", " "),
         unit ? h("span", { class: "unit" }, unit) : null), field, sliders ? slider_of(field, property, name.replaceAll("_", " ")) : null,
       property.description ? h("p", { id: `${id}-help`, class: "small" }, `${property.description}${range ? ` (${range.trim()})` : ""}`) : null);
+      this.rows.set(name, row);
+      return row;
     }));
+    this.element.addEventListener("change", () => this.hide_without_effect());
+    this.hide_without_effect();
   }
 
   values() {
@@ -63,6 +68,13 @@ export class ParameterForm {
       const value = field.type === "checkbox" ? field.checked : type === "string" ? field.value : field.valueAsNumber;
       return [name, value];
     }));
+  }
+
+  /// Leaves out what changes nothing unless another parameter has a certain choice.
+  hide_without_effect() {
+    for (const [name, row] of this.rows)
+      row.hidden = Object.entries(this.schema.properties[name]["x-only-with"] ?? {})
+        .some(([other, choice]) => this.fields.get(other)?.value !== choice);
   }
 
   /// Marks the field that the server named.

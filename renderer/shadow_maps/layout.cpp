@@ -1,0 +1,45 @@
+#include "renderer/shadow_maps/layout.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace penumbra::shadow_maps {
+
+std::vector<Layout> generated_layouts();  // by the build, from layouts/*.cpp
+
+const std::vector<Layout>& layouts() {
+  static const std::vector<Layout> list = [] {
+    std::vector<Layout> made = generated_layouts();
+    std::sort(made.begin(), made.end(), [](const Layout& a, const Layout& b) {
+      const bool a_first = a.id == default_layout;
+      const bool b_first = b.id == default_layout;
+      return a_first != b_first ? a_first : a.id < b.id;
+    });
+    return made;
+  }();
+  return list;
+}
+
+std::string only_directional(LightKind kind) {
+  return kind == LightKind::directional ? "" : "it is for directional lights";
+}
+
+const Layout& chosen_layout(const ParameterValues& parameters) {
+  const std::string& id = choice_of(parameters, "layout");
+  for (const Layout& layout : layouts())
+    if (layout.id == id) return layout;
+  throw std::logic_error("parameter layout names none: " + id);
+}
+
+std::string chosen_layout_glsl() {
+  std::string text;
+  for (const Layout& layout : layouts()) {
+    std::string name = layout.id;
+    std::replace(name.begin(), name.end(), '-', '_');
+    text += "#ifdef variant_layout_" + name + "\n#include \"renderer/shadow_maps/layouts/" +
+            layout.id + ".glsl\"\n#endif\n";
+  }
+  return text;
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "renderer/frame/light_points.h"
+#include "renderer/frame/transforms.h"
+#include "renderer/scene/gpu_scene.h"
+#include "renderer/shaders/shader_types.h"
+#include "renderer/technique.h"
+
+namespace penumbra::shadow_maps {
+
+/// How a filter reads a map.
+struct MapUse {
+  double kernel_radius = 0.0;  ///< texels that it reads from the receiver's place; the bias follows
+  double border = kernel_radius;  ///< texels by which a view is wider than what it serves
+  bool follows_extent = false;    ///< it reads as far as the penumbra of the light's extent
+  bool common_range = false;      ///< it averages coded depths: those of all views must agree
+};
+
+/// What a layout fits its views to.
+struct ViewFitting {
+  const GpuScene& scene;
+  const WorldLight& light;
+  const LightFit& fit;
+  const CameraMatrices& camera;  ///< of the whole picture, whatever window of it is drawn
+  const ParameterValues& parameters;
+  const MapUse& use;
+  std::uint32_t size;  ///< texels along a side of a view
+};
+
+/// Where depth lives: which views of the scene a light's map has, and which of them tell of a
+/// receiver. A layout is layouts/<id>.cpp, which describes this, and layouts/<id>.glsl, which
+/// defines `ViewChoice choose_views(vec3 position)`; the build finds them.
+struct Layout {
+  std::string id;                     ///< value of parameter `layout`, and name of the files
+  std::string meaning;                ///< a few words in that parameter's description
+  std::vector<Parameter> parameters;  ///< its own; without a variant, so that none costs a compile
+  /// Why it cannot serve this kind of light; empty: it can.
+  std::function<std::string(LightKind)> refusal;
+  std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
+  std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
+};
+
+/// A refusal of all lights but directional ones.
+std::string only_directional(LightKind kind);
+
+inline constexpr const char* default_layout = "single";
+
+/// In order of id, but the default first.
+const std::vector<Layout>& layouts();
+
+/// The one that parameter `layout` names.
+const Layout& chosen_layout(const ParameterValues& parameters);
+
+/// Text of renderer/shadow_maps/chosen_layout.glsl: includes the GLSL of the chosen layout.
+std::string chosen_layout_glsl();
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/seen.h"
+
+namespace penumbra::shadow_maps {
+namespace {
+
+/// Widened to powers of the fourth root of two, so that it stays as it is while the camera moves a
+/// little.
+Slice steady_slice(const Slice& seen) {
+  return {std::exp2(std::floor(4.0 * std::log2(seen.near)) / 4.0),
+          std::exp2(std::ceil(4.0 * std::log2(seen.far)) / 4.0)};
+}
+
+/// Splits between even depths (lambda 0) and even ratios of depths (lambda 1): the practical scheme
+/// of Zhang et al. 2006. One more than there are cascades.
+std::vector<double> split_depths(const Slice& all, std::int64_t cascades, double lambda) {
+  std::vector<double> splits;
+  for (std::int64_t i = 0; i <= cascades; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(cascades);
+    const double even = all.near + all.depth() * share;
+    splits.push_back(lambda * all.near * std::pow(all.far / all.near, share) +
+                     (1.0 - lambda) * even);
+  }
+  return splits;
+}
+
+/// A square of the plane across the light's direction, m.
+struct Square {
+  glm::dvec2 center;
+  double half;
+};
+
+/// Around all that is seen of the slice.
+Square tight_square(const ViewFitting& fitting, const Slice& slice, const ViewAxes& axes) {
+  Bounds seen;
+  const auto add = [&](const glm::dvec3& point) {
+    seen.add({glm::dot(point, axes.right()), glm::dot(point, axes.up), 0.0});
+  };
+  visit_seen(fitting, slice, add);
+  if (seen.empty())
+    for (const glm::dvec3& corner : corners_of(fitting.camera, slice)) add(corner);
+  return {glm::dvec2(seen.center()), 0.5 * std::max(seen.size().x, seen.size().y)};
+}
+
+/// Around a sphere that holds the slice: of one size however the camera turns.
+Square steady_square(const CameraMatrices& camera, const Slice& slice, const ViewAxes& axes) {
+  const auto corners = corners_of(camera, slice);
+  const auto distance_from_axis = [&](const glm::dvec3& point) {
+    return glm::length(point - camera.position - depth_of(camera, point) * camera.direction);
+  };
+  const double a = distance_from_axis(corners[0]);
+  const double b = distance_from_axis(corners[4]);
+  const double depth =
+      slice.depth() > 0.0
+          ? std::clamp(0.5 * (slice.near + slice.far) + 0.5 * (b * b - a * a) / slice.depth(),
+                       slice.near, slice.far)
+          : slice.near;
+  const glm::dvec3 center = camera.position + depth * camera.direction;
+  const double radius =
+      std::max(std::hypot(a, depth - slice.near), std::hypot(b, slice.far - depth));
+  return {{glm::dot(center, axes.right()), glm::dot(center, axes.up)}, radius};
+}
+
+/// Moves the square's centre to whole texels, counted from a point of the scene that stays where it
+/// is when the frame's origin does not.
+void snap(Square& square, const ViewFitting& fitting, const ViewAxes& axes) {
+  const glm::dvec3 origin = fitting.scene.origin();
+  const glm::dvec2 fixed(glm::dot(origin, axes.right()), glm::dot(origin, axes.up));
+  const double texel = 2.0 * square.half / fitting.size;
+  square.center = glm::round((square.center + fixed) / texel) * texel - fixed;
+}
+
+std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
+  const ParameterValues& parameters = fitting.parameters;
+  const WorldLight& light = fitting.light;
+  const bool steady = boolean_of(parameters, "cascade_snapping");
+  const double blend = real_of(parameters, "cascade_blend");
+  const ViewAxes axes{light.direction, light.up};
+  const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
+  const double widen = 1.0 / (1.0 - 2.0 * guard_share(fitting.use, fitting.size));
+  // The widest penumbra: of the highest caster on the lowest receiver.
+  const double reach =
+      fitting.use.follows_extent ? extent_radius(*light.source) * covered.size().z : 0.0;
+
+  const Slice seen = visible_slice(fitting);
+  const auto splits =
+      split_depths(steady ? steady_slice(seen) : seen, integer_of(parameters, "cascades"),
+                   real_of(parameters, "split_lambda"));
+  std::vector<shader::MapView> views;
+  double begin = splits.front();
+  for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
+    const Slice slice{begin, splits[i + 1]};
+    Square square =
+        steady ? steady_square(fitting.camera, slice, axes) : tight_square(fitting, slice, axes);
+    square.half = std::max(square.half, 1e-6);
+    // Room for the filter; at most as much again for penumbrae.
+    square.half = std::max(square.half * widen, std::min(square.half + reach, 2.0 * square.half));
+    if (steady) snap(square, fitting, axes);
+    const glm::dvec3 origin =
+        square.center.x * axes.right() + square.center.y * axes.up + covered.low.z * axes.forward;
+    shader::MapView view = make_view(origin, axes, square.half, false, fitting.size);
+    // The next cascade takes over gradually from here to the end, and so begins here.
+    begin = splits[i + 1] - blend * (splits[i + 1] - splits[i]);
+    view.choice = {static_cast<float>(begin), static_cast<float>(splits[i + 1]), 0.0f, 0.0f};
+    views.push_back(view);
+  }
+  fit_ranges(views, fitting.scene, fitting.fit, fitting.use.common_range);
+  return views;
+}
+
+std::vector<Parameter> cascade_parameters() {
+  Parameter cascades;
+  cascades.name = "cascades";
+  cascades.type = ParameterType::integer;
+  cascades.default_value = std::int64_t{4};
+  cascades.minimum = 2;
+  cascades.maximum = shader::max_map_views;
+  cascades.meaning = "Cascades that the depth before the camera is cut into, each map_size wide.";
+
+  Parameter lambda;
+  lambda.name = "split_lambda";
+  lambda.default_value = 0.5;
+  lambda.minimum = 0.0;
+  lambda.maximum = 1.0;
+  lambda.meaning =
+      "Where cascades end. 0: all are equally deep. 1: each is as many times deeper than the one "
+      "before it.";
+
+  Parameter blend;
+  blend.name = "cascade_blend";
+  blend.default_value = 0.1;
+  blend.minimum = 0.0;
+  blend.maximum = 0.5;
+  blend.unit = "of depth";
+  blend.meaning = "Last part of a cascade's depth, over which the next one takes over gradually.";
+
+  Parameter snapping;
+  snapping.name = "cascade_snapping";
+  snapping.type = ParameterType::boolean;
+  snapping.default_value = true;
+  snapping.meaning =
+      "Fit cascades to spheres and move them by whole texels, so that shadows do not crawl when "
+      "the camera moves; otherwise fit them tightly to what is seen.";
+  return {cascades, lambda, blend, snapping};
+}
+
+}  // namespace
+
+Layout describe_cascaded();
+Layout describe_cascaded() {
+  return {.id = "cascaded",
+          .meaning =
+              "views of slices of what the camera sees, near ones finer, for directional "
+              "lights",
+          .parameters = cascade_parameters(),
+          .refusal = only_directional,
+          .view_count =
+              [](const Light&, const ParameterValues& parameters) {
+                return static_cast<std::uint32_t>(integer_of(parameters, "cascades"));
+              },
+          .fit = fit_cascades};
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,43 @@
+#include <cmath>
+
+#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/warp.h"
+
+namespace penumbra::shadow_maps {
+namespace {
+
+/// Where errors near and far are alike (Wimmer, Scherzer and Purgathofer 2004, 5).
+double best_distance(const WarpInput& input) {
+  return (input.seen.near + std::sqrt(input.seen.near * input.seen.far)) / input.sine;
+}
+
+std::vector<shader::MapView> fit_light_space_perspective(const ViewFitting& fitting) {
+  const double given = real_of(fitting.parameters, "warp_distance");
+  return fit_warped(fitting, [given](const WarpInput& input) {
+    return given > 0.0 ? given : best_distance(input);
+  });
+}
+
+}  // namespace
+
+Layout describe_light_space_perspective();
+Layout describe_light_space_perspective() {
+  Parameter distance;
+  distance.name = "warp_distance";
+  distance.default_value = 0.0;
+  distance.minimum = 0.0;
+  distance.maximum = 1e6;
+  distance.unit = "m";
+  distance.meaning =
+      "From the warp's eye to the nearest place seen: the less, the more texels go to what is "
+      "near. "
+      "0: the published optimum.";
+  return {.id = "light-space-perspective",
+          .meaning = "one view bent so that near places get more texels, for directional lights",
+          .parameters = {distance},
+          .refusal = only_directional,
+          .view_count = [](const Light&, const ParameterValues&) { return 1u; },
+          .fit = fit_light_space_perspective};
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/warp.h"
+
+namespace penumbra::shadow_maps {
+namespace {
+
+/// Half angle of the widest spot light that is served by one view, degrees. A wider cone's one view
+/// would have few texels left for its middle, and none beyond a right angle.
+constexpr double widest_single_view = 75.0;
+
+bool has_six_views(const Light& light) {
+  return light.kind == LightKind::point ||
+         (light.kind == LightKind::spot && light.outer_angle > widest_single_view);
+}
+
+std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
+  const WorldLight& light = fitting.light;
+  if (light.kind == LightKind::directional && choice_of(fitting.parameters, "focus") == "seen")
+    return fit_warped(fitting,
+                      [](const WarpInput&) { return std::numeric_limits<double>::infinity(); });
+  const double widen = 1.0 / (1.0 - 2.0 * guard_share(fitting.use, fitting.size));
+  std::vector<shader::MapView> views;
+  if (light.kind == LightKind::directional) {
+    const ViewAxes axes{light.direction, light.up};
+    const Bounds bounds = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
+    const glm::dvec3 center = bounds.center();
+    const double half = std::max(0.5 * std::max(bounds.size().x, bounds.size().y), 1e-6) * widen;
+    const glm::dvec3 origin =
+        center.x * axes.right() + center.y * axes.up + bounds.low.z * axes.forward;
+    views.push_back(make_view(origin, axes, half, false, fitting.size));
+  } else {
+    std::vector<ViewAxes> axes{{light.direction, light.up}};
+    double tangent = std::tan(glm::radians(light.source->outer_angle));
+    if (has_six_views(*light.source)) {
+      axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
+              {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
+      tangent = 1.0;
+    }
+    for (const ViewAxes& view_axes : axes)
+      views.push_back(make_view(light.position, view_axes, tangent * widen, true, fitting.size));
+  }
+  fit_ranges(views, fitting.scene, fitting.fit, true);
+  return views;
+}
+
+}  // namespace
+
+Layout describe_single();
+Layout describe_single() {
+  Parameter focus;
+  focus.name = "focus";
+  focus.type = ParameterType::choice;
+  focus.choices = {"scene", "seen"};
+  focus.default_value = std::string("scene");
+  focus.meaning =
+      "What a directional light's view covers: the whole scene, or what the camera sees of it.";
+  return {.id = "single",
+          .meaning = "one view over the light's cone or the scene, six around a point light",
+          .parameters = {focus},
+          .refusal = [](LightKind) { return std::string(); },
+          .view_count = [](const Light& light,
+                           const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
+          .fit = fit_single};
+}
+
+}  // namespace penumbra::shadow_maps

@@ -1,0 +1,130 @@
+#include "renderer/shadow_maps/warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/shadow_maps/light_view.h"
+
+namespace penumbra::shadow_maps {
+namespace {
+
+/// Sine below which camera and light count as parallel: 3 degrees.
+constexpr double parallel = 0.05;
+
+bool is_perspective(const CameraMatrices& camera) {
+  const glm::dmat4& clip = camera.clip_from_world;
+  return glm::length(glm::dvec3(clip[0].w, clip[1].w, clip[2].w)) > 0.0;
+}
+
+/// Places of the plane across the light, m.
+struct SeenPlane {
+  std::vector<glm::dvec2> points;  ///< which span what is seen
+  glm::dvec2 low{std::numeric_limits<double>::infinity()};
+  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dvec2& point) {
+    points.push_back(point);
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+};
+
+SeenPlane seen_plane(const ViewFitting& fitting, const Slice& slice, const ViewAxes& axes) {
+  SeenPlane plane;
+  const auto add = [&](const glm::dvec3& point) {
+    plane.add({glm::dot(point, axes.right()), -glm::dot(point, axes.up)});
+  };
+  visit_seen(fitting, slice, add);
+  if (plane.points.empty())
+    for (const glm::dvec3& corner : corners_of(fitting.camera, slice)) add(corner);
+  // A plane seen edge-on has an extent all the same.
+  const double least = 1e-6 + 1e-6 * glm::length(plane.high - plane.low);
+  plane.low -= least;
+  plane.high += least;
+  return plane;
+}
+
+/// From a square around the origin, `half` as wide, to a perspective picture of what lies before
+/// (camera, low.y - distance), y from -1 at low.y to 1 at high.y.
+glm::dmat3 perspective_warp(double camera, double low, double high, double distance) {
+  const double length = high - low;
+  const double a = (length + 2.0 * distance) / length;
+  const double b = -2.0 * (distance + length) * distance / length;
+  const double shift = distance - low;
+  glm::dmat3 warp(1.0);  // columns: of x, y, 1
+  warp[0] = {1.0, 0.0, 0.0};
+  warp[1] = {0.0, a, 1.0};
+  warp[2] = {-camera, a * shift + b, shift};
+  return warp;
+}
+
+/// Moves and scales x and y so that the points' bounds reach `share` of the way to -1 and 1.
+glm::dmat3 fill(const glm::dmat3& warp, const std::vector<glm::dvec2>& points, double share) {
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high = -low;
+  for (const glm::dvec2& point : points) {
+    const glm::dvec3 place = warp * glm::dvec3(point, 1.0);
+    low = glm::min(low, glm::dvec2(place) / place.z);
+    high = glm::max(high, glm::dvec2(place) / place.z);
+  }
+  const glm::dvec2 half = glm::max(0.5 * (high - low), glm::dvec2(1e-9));
+  const glm::dvec2 scale = share / half;
+  const glm::dvec2 center = 0.5 * (low + high);
+  const glm::dmat3 placed(scale.x, 0.0, 0.0, 0.0, scale.y, 0.0, -scale.x * center.x,
+                          -scale.y * center.y, 1.0);
+  return placed * warp;
+}
+
+/// Axes whose y, downwards on the map, leads away from the camera.
+ViewAxes axes_along(const WorldLight& light, const glm::dvec3& ahead, double sine) {
+  if (sine < parallel) return {light.direction, light.up};
+  return {light.direction, -ahead / sine};
+}
+
+}  // namespace
+
+std::vector<shader::MapView> fit_warped(const ViewFitting& fitting,
+                                        const std::function<double(const WarpInput&)>& distance) {
+  const WorldLight& light = fitting.light;
+  const CameraMatrices& camera = fitting.camera;
+  const glm::dvec3 ahead =
+      camera.direction - glm::dot(camera.direction, light.direction) * light.direction;
+  const double sine = glm::length(ahead);
+  const ViewAxes axes = axes_along(light, ahead, sine);
+  const Slice seen = visible_slice(fitting);
+  const SeenPlane plane = seen_plane(fitting, seen, axes);
+  const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
+
+  const glm::dvec2 center = 0.5 * (plane.low + plane.high);
+  const glm::dvec2 size = plane.high - plane.low;
+  const double half = 0.5 * std::max(size.x, size.y);
+  const glm::dvec3 origin =
+      center.x * axes.right() - center.y * axes.up + covered.low.z * axes.forward;
+  shader::MapView view = make_view(origin, axes, half, false, fitting.size);
+
+  // In units of the square from here on.
+  std::vector<glm::dvec2> points;
+  for (const glm::dvec2& point : plane.points) points.push_back((point - center) / half);
+  const double before = sine < parallel || !is_perspective(camera)
+                            ? std::numeric_limits<double>::infinity()
+                            : distance({seen, size.y, sine}) / half;
+  glm::dmat3 warp(1.0);
+  if (std::isfinite(before))
+    warp = perspective_warp((glm::dot(camera.position, axes.right()) - center.x) / half,
+                            -0.5 * size.y / half, 0.5 * size.y / half, std::max(before, 1e-4));
+  double share = 1.0 - 2.0 * guard_share(fitting.use, fitting.size);
+  if (fitting.use.follows_extent) {
+    // Room for the widest penumbra, but for no more than half of the map.
+    const double reach = extent_radius(*light.source) * covered.size().z;
+    share = std::min(
+        share,
+        std::max(0.5 * std::min(size.x, size.y) / (0.5 * std::min(size.x, size.y) + reach), 0.5));
+  }
+  warp_view(view, fill(warp, points, share), fitting.size);
+  std::vector<shader::MapView> views{view};
+  fit_ranges(views, fitting.scene, fitting.fit, true);
+  return views;
+}
+
+}  // namespace penumbra::shadow_maps
