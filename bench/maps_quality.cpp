@@ -11,7 +11,7 @@
 #include <map>
 
 #include "bench/program.h"
-#include "bench/van_sambeek_2007.h"
+#include "study/van_sambeek_2007.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"

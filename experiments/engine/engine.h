@@ -63,6 +63,8 @@ class Engine {
   /// Runs that were measured, not known.
   std::size_t measured() const { return measured_; }
   const DeviceInfo& device() const { return renderer_.device(); }
+  /// For pictures that are looked at and not kept.
+  Renderer& renderer() { return renderer_; }
   /// The scene of that name, kept while it is asked for again.
   std::shared_ptr<const Scene> scene(const std::string& name);
 

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "experiments/claims/run.h"
 #include "experiments/engine/progress_file.h"
 #include "experiments/sweep/sweep.h"
 #include "experiments/tradeoff/tradeoff.h"
 #include "renderer/error.h"
 #include "server/cli/progress.h"
 #include "server/cli/session.h"
+#include "server/cli/table.h"
 #include "server/jobs/device_lock.h"
 
 namespace penumbra::server::cli {
@@ -33,6 +35,14 @@ struct Options {
   bool bias = false;
 
   void add_to(CLI::App& command) {
+    add_common_to(command);
+    command.add_option("--light-samples", light_samples, "Light points of the reference")
+        ->check(CLI::Range(1u, RenderLimits::max_light_samples))
+        ->capture_default_str();
+  }
+
+  /// What every experiment takes.
+  void add_common_to(CLI::App& command) {
     command.add_option("--out", out, "Folder of results, figures and report; made if not there")
         ->required();
     command.add_option("--data", data, "Folder of imported scenes");
@@ -40,9 +50,6 @@ struct Options {
     command
         .add_option("--run-ms", run_ms, "Frames are timed for about so long a run, milliseconds")
         ->check(CLI::Range(1.0, 60000.0))
-        ->capture_default_str();
-    command.add_option("--light-samples", light_samples, "Light points of the reference")
-        ->check(CLI::Range(1u, RenderLimits::max_light_samples))
         ->capture_default_str();
   }
 
@@ -140,9 +147,56 @@ int run_tradeoff(const Session& session, const Options& options) {
   return finish(session, options, experiments::tradeoff(tradeoff));
 }
 
+struct ClaimsOptions {
+  Options common;
+  std::string only;
+  bool quick = false;
+  fs::path page;
+};
+
+int run_claims(const Session& session, const ClaimsOptions& given) {
+  experiments::claims::Options options;
+  options.engine = given.common.engine();
+  options.only = list_of("only", given.only);
+  options.quick = given.quick;
+  options.page = given.page;
+  options.command = "penumbra claims";
+  if (!given.only.empty()) options.command += " --only " + given.only;
+  if (given.quick) options.command += " --quick";
+  if (given.common.run_ms != experiments::TimingBudget{}.run_ms)
+    options.command += " --run-ms " + std::to_string(std::lround(given.common.run_ms));
+  Progress bar("claims");
+  experiments::ProgressFile file(given.common.out);
+  options.progress = shown(bar, file);
+  const nlohmann::json summary = experiments::claims::run(options);
+  Table table({"claim", "verdict", "published"});
+  for (const auto& claim : summary.at("claims"))
+    table.add({claim.at("id"), claim.at("verdict"), claim.at("statement")});
+  session.print(summary,
+                table.text(true) + "wrote " + (given.common.out / "report.html").string() + "\n");
+  return 0;
+}
+
+void add_claims_command(CLI::App& app, Session& session) {
+  auto claims = std::make_shared<ClaimsOptions>();
+  CLI::App* command = app.add_subcommand(
+      "claims", "Measure what was published, claim by claim; goes on where it was stopped");
+  command->add_option("--only,--ids", claims->only, "Ids of claims, separated by commas [all]");
+  command->add_flag("--quick", claims->quick, "Small pictures: minutes instead of an hour");
+  command->add_option("--page", claims->page, "Also write the table as Markdown to this file");
+  claims->common.out = "claims";
+  claims->common.add_common_to(*command);
+  command->get_option("--out")->required(false)->capture_default_str();
+  add_json_flag(*command, session);
+  command->callback([claims, &session] {
+    session.action = [claims, &session] { return run_claims(session, *claims); };
+  });
+}
+
 }  // namespace
 
 void add_experiment_commands(CLI::App& app, Session& session) {
+  add_claims_command(app, session);
   auto sweep = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Time techniques over scenes and sizes; goes on where it was stopped");

@@ -35,7 +35,7 @@ void add_demo_command(CLI::App& app, Session& session);        // demo
 void add_stability_command(CLI::App& app, Session& session);   // stability
 void add_data_commands(CLI::App& app, Session& session);       // backup, restore, verify, export
 
-/// sweep, tradeoff
+/// claims, sweep, tradeoff
 void add_experiment_commands(CLI::App& app, Session& session);
 
 /// Arguments with the environment (PENUMBRA_NAME) and the file of --config put in where no flag

@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include "experiments/engine/progress_file.h"
 #include "experiments/stability/report.h"
 #include "server/cli/progress.h"
 #include "server/cli/session.h"
@@ -33,6 +34,11 @@ json document_of(const stability::Report& report, const std::string& out) {
           {"drawn", report.drawn},
           {"findings", findings},
           {"links", {{"report", out + "/report.html"}, {"csv", out + "/results.csv"}}}};
+}
+
+/// Axes take different times, so shares of the whole are told as such.
+std::size_t percent(double share) {
+  return static_cast<std::size_t>(100.0 * share);
 }
 
 std::string text_of(const stability::Report& report, const std::string& out) {
@@ -77,10 +83,13 @@ void add_stability_command(CLI::App& app, Session& session) {
       stability::Report report;
       {
         Progress progress("stability");
+        experiments::ProgressFile file(options->out);
         options->progress = [&](double value, const std::string& what) {
           progress.show(value, what);
+          file.show({percent(value), 100, 0, std::nullopt, what});
         };
         report = stability::run(*options);
+        file.show({percent(1.0), 100, report.drawn, std::nullopt, ""});
       }
       stability::write_report(report, options->out);
       const std::string out = options->out.string();

@@ -31,24 +31,40 @@ struct Key {
 struct Kind {
   const char* name;
   std::vector<Key> keys;
+  bool imports = true;  ///< whether it takes the folder of imported scenes
 };
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all{{"sweep",
-                                      {{"scenes", "--scenes", Form::list},
-                                       {"techniques", "--techniques", Form::list},
-                                       {"sizes", "--sizes", Form::list},
-                                       {"run_ms", "--run-ms", Form::number},
-                                       {"light_samples", "--light-samples", Form::number},
-                                       {"errors", "--errors", Form::flag}}},
-                                     {"tradeoff",
-                                      {{"scene", "", Form::scene},
-                                       {"techniques", "--techniques", Form::list},
-                                       {"size", "--size", Form::number},
-                                       {"run_ms", "--run-ms", Form::number},
-                                       {"light_samples", "--light-samples", Form::number},
-                                       {"bias", "--bias", Form::flag}}}};
+  static const std::vector<Kind> all{
+      {"sweep",
+       {{"scenes", "--scenes", Form::list},
+        {"techniques", "--techniques", Form::list},
+        {"sizes", "--sizes", Form::list},
+        {"run_ms", "--run-ms", Form::number},
+        {"light_samples", "--light-samples", Form::number},
+        {"errors", "--errors", Form::flag}}},
+      {"tradeoff",
+       {{"scene", "", Form::scene},
+        {"techniques", "--techniques", Form::list},
+        {"size", "--size", Form::number},
+        {"run_ms", "--run-ms", Form::number},
+        {"light_samples", "--light-samples", Form::number},
+        {"bias", "--bias", Form::flag}}},
+      {"claims",
+       {{"only", "--only", Form::list},
+        {"quick", "--quick", Form::flag},
+        {"run_ms", "--run-ms", Form::number}}},
+      {"stability",
+       {{"techniques", "--techniques", Form::list}, {"axes", "--axes", Form::list}},
+       false}};
   return all;
+}
+
+/// The kind that a request names, or null.
+const Kind* kind_of(const json& request) {
+  for (const Kind& kind : kinds())
+    if (request.value("kind", json(nullptr)) == kind.name) return &kind;
+  return nullptr;
 }
 
 /// Text of names and parameters alone: no path, no option.
@@ -116,25 +132,25 @@ bool wait_for(ChildProcess& child, const std::function<bool()>& goes_on, std::st
 
 std::vector<std::string> experiment_arguments(const json& request) {
   if (!request.is_object()) throw bad_value("body", "must be an object");
-  std::string names;
-  for (const Kind& kind : kinds()) {
-    names += (names.empty() ? "" : ", ") + std::string(kind.name);
-    if (request.value("kind", json(nullptr)) != kind.name) continue;
-    std::vector<std::string> arguments{kind.name};
-    for (const auto& [name, value] : request.items()) {
-      if (name == "kind") continue;
-      const auto key = std::find_if(kind.keys.begin(), kind.keys.end(),
-                                    [&, &wanted = name](const Key& k) { return wanted == k.name; });
-      if (key == kind.keys.end())
-        throw bad_value(name, "unknown key '" + name + "' of an experiment of this kind");
-      add_argument(arguments, *key, value);
-    }
-    for (const Key& key : kind.keys)
-      if (key.form == Form::scene && !request.contains(key.name))
-        throw bad_value(key.name, std::string(key.name) + " is missing");
-    return arguments;
+  const Kind* kind = kind_of(request);
+  if (kind == nullptr) {
+    std::string names;
+    for (const Kind& each : kinds()) names += (names.empty() ? "" : ", ") + std::string(each.name);
+    throw bad_value("kind", "kind must be one of " + names);
   }
-  throw bad_value("kind", "kind must be one of " + names);
+  std::vector<std::string> arguments{kind->name};
+  for (const auto& [name, value] : request.items()) {
+    if (name == "kind") continue;
+    const auto key = std::find_if(kind->keys.begin(), kind->keys.end(),
+                                  [&, &wanted = name](const Key& k) { return wanted == k.name; });
+    if (key == kind->keys.end())
+      throw bad_value(name, "unknown key '" + name + "' of an experiment of this kind");
+    add_argument(arguments, *key, value);
+  }
+  for (const Key& key : kind->keys)
+    if (key.form == Form::scene && !request.contains(key.name))
+      throw bad_value(key.name, std::string(key.name) + " is missing");
+  return arguments;
 }
 
 Experiments::Experiments(ExperimentOptions options) : options_(std::move(options)) {
@@ -263,10 +279,10 @@ void Experiments::work() {
 void Experiments::run(const std::string& id) {
   std::vector<std::string> command = options_.program;
   const fs::path folder = options_.folder / id;
-  for (const std::string& argument : experiment_arguments(find(id)->request))
-    command.push_back(argument);
-  command.insert(command.end(),
-                 {"--out=" + folder.string(), "--data=" + options_.data.string(), "--json"});
+  const json request = find(id)->request;
+  for (const std::string& argument : experiment_arguments(request)) command.push_back(argument);
+  command.insert(command.end(), {"--out=" + folder.string(), "--json"});
+  if (kind_of(request)->imports) command.push_back("--data=" + options_.data.string());
   if (!options_.device.empty()) command.push_back("--device=" + options_.device);
   ChildProcess child(command, {});
   std::string output;

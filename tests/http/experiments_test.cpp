@@ -73,6 +73,7 @@ TEST_F(ExperimentsTest, refuse_files_options_and_keys_that_there_are_not) {
       {{{"kind", "sweep"}, {"out", "elsewhere"}}, "out"},
       {{{"kind", "sweep"}, {"sizes", json::array()}}, "sizes"},
       {{{"kind", "sweep"}, {"errors", "yes"}}, "errors"},
+      {{{"kind", "claims"}, {"page", "elsewhere"}}, "page"},
       {{{"kind", "tradeoff"}}, "scene"},
       {{{"kind", "tradeoff"}, {"scene", "../x"}}, "scene"}};
   for (const auto& [request, field] : cases) {
@@ -80,6 +81,30 @@ TEST_F(ExperimentsTest, refuse_files_options_and_keys_that_there_are_not) {
     EXPECT_EQ(error_of(answer, 400), "bad_value") << request;
     EXPECT_EQ(json::parse(answer->body)["error"]["field"], field) << request;
   }
+}
+
+TEST_F(ExperimentsTest, push_techniques_to_where_they_break) {
+  const json state = body_of(
+      start({{"kind", "stability"}, {"techniques", "shadow-map"}, {"axes", {"small-picture"}}}),
+      202, "Experiment");
+  const json done = over(state["id"]);
+  EXPECT_EQ(done["status"], "done");
+  EXPECT_EQ(done["progress"]["done"], done["progress"]["total"]);
+  const auto table =
+      researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/results.csv");
+  EXPECT_EQ(table->status, 200);
+  EXPECT_THAT(table->body, HasSubstr("shadow-map,small-picture,"));
+}
+
+TEST_F(ExperimentsTest, measure_claims) {
+  const json state = body_of(start({{"kind", "claims"}, {"only", {"P05", "P07"}}, {"quick", true}}),
+                             202, "Experiment");
+  EXPECT_EQ(over(state["id"])["status"], "done");
+  const auto table =
+      researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/results.csv");
+  EXPECT_EQ(table->status, 200);
+  EXPECT_THAT(table->body, HasSubstr("P05,"));
+  EXPECT_THAT(table->body, HasSubstr("P07,"));
 }
 
 TEST_F(ExperimentsTest, tell_why_one_failed) {

@@ -1,10 +1,10 @@
-// Tables of van Sambeek 2007, as bench/ has them, and what follows from them.
+// Tables of van Sambeek 2007, as study/ has them, and what follows from them.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "bench/van_sambeek_2007.h"
+#include "study/van_sambeek_2007.h"
 #include "study/statistics/agreement.h"
 
 namespace penumbra::study::statistics {

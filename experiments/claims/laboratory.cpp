@@ -1,0 +1,85 @@
+#include "experiments/claims/laboratory.h"
+
+#include "experiments/report/rows.h"
+#include "renderer/error.h"
+
+namespace penumbra::experiments::claims {
+
+Scale full_scale() {
+  return {};
+}
+
+Scale quick_scale() {
+  return {120, 64, 150, 64};
+}
+
+Engine& Laboratory::engine() {
+  if (!engine_) engine_ = std::make_unique<Engine>(options_);
+  return *engine_;
+}
+
+const nlohmann::json& Laboratory::row(const std::string& scene, const std::string& technique,
+                                      Truth truth, std::uint32_t size,
+                                      std::uint32_t light_samples) {
+  const NamedTechnique named = read_technique(technique);
+  Run run;
+  run.scene = scene;
+  run.technique = named.id;
+  run.parameters = named.parameters;
+  run.name = technique;
+  run.width = run.height = size == 0 ? scale_.size : size;
+  run.light_samples = light_samples == 0 ? scale_.light_samples : light_samples;
+  run.truth = truth;
+  const std::string key = scene + " " + technique + " " + std::to_string(run.width) + " " +
+                          std::to_string(run.light_samples) + " " +
+                          std::to_string(static_cast<int>(truth));
+  const auto [place, fresh] = known_.try_emplace(key, rows_.size());
+  if (fresh) {
+    try {
+      if (before) before(scene + " " + technique);
+      rows_.push_back(engine().measure(run));
+    } catch (...) {
+      known_.erase(place);
+      throw;
+    }
+  }
+  const nlohmann::json& found = rows_[place->second];
+  if (!is_done(found)) {
+    const nlohmann::json& error = found.at("error");
+    throw Error(error.at("code"), error.at("message"), error.at("field"));
+  }
+  return found;
+}
+
+double Laboratory::value(const char* key, const std::string& scene, const std::string& technique,
+                         Truth truth, std::uint32_t size) {
+  return number_of(row(scene, technique, truth, size), key);
+}
+
+RenderResult Laboratory::draw(const std::string& scene, const std::string& technique,
+                              std::uint32_t size, std::uint32_t light_samples) {
+  if (before) before(scene + " " + technique);
+  const NamedTechnique named = read_technique(technique);
+  const auto resolved = techniques::resolve(named.id, named.parameters);
+  RenderRequest request;
+  request.scene = engine().scene(scene);
+  request.technique = resolved.technique;
+  request.parameters = resolved.parameters;
+  request.width = request.height = size == 0 ? scale_.size : size;
+  request.light_samples = light_samples == 0 ? scale_.light_samples : light_samples;
+  request.visibility = true;
+  return engine().renderer().render(request);
+}
+
+double mean_visibility(const RenderResult& drawn) {
+  double sum = 0.0, weight = 0.0;
+  for (std::uint32_t y = 0; y < drawn.visibility.height; ++y)
+    for (std::uint32_t x = 0; x < drawn.visibility.width; ++x) {
+      const double judged = static_cast<double>(drawn.judged.at(x, y, 0));
+      sum += judged * static_cast<double>(drawn.visibility.at(x, y, 0));
+      weight += judged;
+    }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+}  // namespace penumbra::experiments::claims

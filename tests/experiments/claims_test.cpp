@@ -1,0 +1,122 @@
+// Claims whose true numbers are known in closed form, and what a verdict takes.
+#include "experiments/claims/claim.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "experiments/claims/run.h"
+#include "renderer/error.h"
+#include "tests/jobs/temporary_folder.h"
+
+namespace penumbra::experiments::claims {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json measure(const TemporaryFolder& folder, const std::vector<std::string>& only) {
+  Options options;
+  options.engine.folder = folder.path();
+  options.engine.timing.run_ms = 1.0;
+  options.only = only;
+  options.quick = true;
+  options.command = "penumbra claims";
+  options.page = folder.path() / "claims.md";
+  return run(options);
+}
+
+const json& claim_of(const json& summary, const std::string& id) {
+  for (const json& claim : summary.at("claims"))
+    if (claim.at("id") == id) return claim;
+  throw std::logic_error("no claim " + id);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Claims, of_published_tables_and_of_arithmetic_give_their_known_numbers) {
+  const TemporaryFolder folder;
+  const json summary = measure(folder, {"P05", "P07", "Q05", "Q43"});
+  EXPECT_TRUE(summary.at("device").is_null()) << "no picture is needed";
+  // R: cor(method = "spearman") of tables 4.2 and 4.9, and of 4.2 and 4.3 to 4.8.
+  EXPECT_NEAR(claim_of(summary, "P05").at("numbers").at("Spearman"), -0.2857143, 1e-7);
+  EXPECT_NEAR(claim_of(summary, "P07").at("numbers").at("island"), -0.275, 5e-4);
+  const json& means = claim_of(summary, "Q05").at("numbers");
+  EXPECT_DOUBLE_EQ(means.at("mean depth"), 267.0 / 9.0);
+  EXPECT_DOUBLE_EQ(means.at("mean of shadows"), 5.0 / 9.0);
+  EXPECT_DOUBLE_EQ(means.at("shadow of the mean depth"), 0.0);
+  const json& tables = claim_of(summary, "Q43").at("numbers");
+  EXPECT_DOUBLE_EQ(tables.at("law at 1024"), std::ldexp(1.0, 20 - 24) / 25.0);
+  EXPECT_EQ(claim_of(summary, "P05").at("verdict"), "reproduced");
+  EXPECT_EQ(claim_of(summary, "Q05").at("verdict"), "reproduced");
+  EXPECT_THAT(text_of(folder.path() / "claims.md"), HasSubstr("| P05 | S0 tables 4.2, 4.9 |"));
+  EXPECT_THAT(text_of(folder.path() / "results.csv"), HasSubstr("Spearman=-0.285714"));
+}
+
+/// Two moments of 16 bits and their mips against one depth of 32.
+TEST(Claims, count_bytes_and_levels_and_go_on_where_they_were) {
+  const TemporaryFolder folder;
+  const json first = measure(folder, {"C24", "Q06"});
+  const json& bytes = claim_of(first, "C24").at("numbers");
+  EXPECT_EQ(bytes.at("bytes of the map"), 512 * 512 * 4);
+  const json& levels = claim_of(first, "Q06").at("numbers");
+  EXPECT_LE(levels.at("levels of 4 samples"), 5.0);
+  EXPECT_GT(levels.at("levels of 4 samples"), 1.0);
+  EXPECT_LE(levels.at("levels of 9 samples"), 10.0);
+  EXPECT_GT(first.at("measured"), 0);
+  const json again = measure(folder, {"C24", "Q06"});
+  EXPECT_EQ(again.at("measured"), 0);
+  EXPECT_EQ(again.at("claims"), first.at("claims"));
+}
+
+TEST(Claims, are_judged_by_the_parts_of_their_rules) {
+  EXPECT_EQ(verdict_of({true, true}), Verdict::reproduced);
+  EXPECT_EQ(verdict_of({true, false}), Verdict::in_part);
+  EXPECT_EQ(verdict_of({false, false}), Verdict::not_reproduced);
+}
+
+TEST(Claims, have_ids_of_their_own_and_say_what_they_wait_for) {
+  std::set<std::string> ids;
+  std::vector<std::string> waiting;
+  for (const Claim& claim : all()) {
+    EXPECT_TRUE(ids.insert(claim.id).second) << claim.id << " is there twice";
+    EXPECT_FALSE(claim.source.empty() || claim.statement.empty() || claim.rule.empty()) << claim.id;
+    if (claim.measure == nullptr) {
+      EXPECT_TRUE(claim.needs == Needs::people || !claim.layouts.empty()) << claim.id;
+      waiting.push_back(claim.id);
+    }
+  }
+  const TemporaryFolder folder;
+  const json summary = measure(folder, waiting);
+  for (const Claim& claim : all()) {
+    if (claim.measure != nullptr) continue;
+    const bool there = std::all_of(claim.layouts.begin(), claim.layouts.end(), has_layout);
+    EXPECT_EQ(claim_of(summary, claim.id).at("verdict"), claim.needs == Needs::people
+                                                             ? "needs people"
+                                                         : there ? "not measured"
+                                                                 : "needs the layout")
+        << claim.id;
+  }
+  EXPECT_FALSE(has_layout("paint"));
+  EXPECT_TRUE(has_layout("single"));
+}
+
+TEST(Claims, that_there_are_not_are_refused_by_name) {
+  const TemporaryFolder folder;
+  try {
+    measure(folder, {"P05", "X99"});
+    FAIL() << "it was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.field, "only");
+    EXPECT_THAT(error.what(), HasSubstr("X99"));
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::experiments::claims
