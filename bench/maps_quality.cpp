@@ -11,10 +11,10 @@
 #include <map>
 
 #include "bench/program.h"
-#include "study/van_sambeek_2007.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
+#include "study/van_sambeek_2007.h"
 #include "techniques/registry.h"
 
 namespace {

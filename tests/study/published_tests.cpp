@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/van_sambeek_2007.h"
 #include "study/statistics/agreement.h"
+#include "study/van_sambeek_2007.h"
 
 namespace penumbra::study::statistics {
 namespace {
