@@ -212,13 +212,12 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
     bindings.texture("geometry_position", geometry.position, vulkan::Sampling::nearest);
     bindings.texture("geometry_words", geometry.words, vulkan::Sampling::nearest);
     const LightFit fit;
-    PrepareContext context{input,        *scene_,    world,
-                           fit,          camera,     geometry,
-                           device_,      pipelines_, ledger_,
-                           constants_,   recorder_,  bindings,
-                           declarations, own,        static_cast<std::uint32_t>(count),
-                           batch,        batches,    0,
-                           notes,        nullptr};
+    PrepareContext context{input,      *scene_,      world,      fit,
+                           camera,     camera,       geometry,   device_,
+                           pipelines_, ledger_,      constants_, recorder_,
+                           bindings,   declarations, own,        static_cast<std::uint32_t>(count),
+                           batch,      batches,      0,          notes,
+                           nullptr};
     recorder_.begin(false);
     mask.trace(context);
     recorder_.pass("copy", [&](vulkan::Commands& commands) {
