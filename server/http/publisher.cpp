@@ -185,7 +185,12 @@ void Publisher::freeze(const storage::StudyRecord& record, const nlohmann::json&
 void Publisher::run_measurement(const storage::StudyRecord& record) {
   const auto name = measurement_name(record);
   const Submitter who{Priority::researcher, name, {name}, {}};
-  std::vector<std::pair<std::string, nlohmann::json>> left;
+  struct Unmeasured {
+    std::string key;
+    std::string render;  ///< that was frozen
+    nlohmann::json request;
+  };
+  std::vector<Unmeasured> left;
   try {
     insist(name, [&] {
       left.clear();
@@ -195,14 +200,17 @@ void Publisher::run_measurement(const storage::StudyRecord& record) {
         const auto found = known.find(key);
         if (found == known.end() || !found->second.measures.is_null()) continue;
         request["measure"] = true;
-        left.emplace_back(key, request);
+        left.push_back({key, found->second.render, request});
       }
     });
-    for (const auto& [key, request] : left) {
+    for (const auto& picture : left) {
       try {
-        const auto measures = measures_of(finished(request, who));
-        insist(name,
-               [&, &key = key] { studies.set_measures(record.id, record.version, key, measures); });
+        const auto render = finished(picture.request, who);
+        if (render.id != picture.render)
+          throw Error("conflict", "this program draws another picture than the one that was shown");
+        insist(name, [&] {
+          studies.set_measures(record.id, record.version, picture.key, measures_of(render));
+        });
       } catch (const Error& error) {
         spdlog::warn("{}: {}", name, error.what());  // the others are measured all the same
       }

@@ -28,12 +28,19 @@ class FakeRenders : public RenderService {
     if (scene == "wide") throw bad_value("width", "must be from 1 to 8192");
     RenderRecord record;
     record.request = request;
-    record.id = sha256(request.dump()).substr(0, 32);
+    // Whether it is measured as well makes no other picture.
+    auto drawn = request;
+    drawn.erase("measure");
+    if (another_program) drawn["drawn_by"] = "another program";
+    record.id = sha256(drawn.dump()).substr(0, 32);
     ++submitted;
     submitters[record.id].push_back(who);
-    if (records.contains(record.id) && records[record.id].status != "cancelled")
-      return records[record.id];
-    if (request.value("measure", false)) {
+    const bool measure = request.value("measure", false);
+    const auto known = records.find(record.id);
+    if (known != records.end() && known->second.status != "cancelled" &&
+        (!measure || !known->second.cost.is_null()))
+      return known->second;
+    if (measure) {
       const bool reference = request.at("technique") == "reference";
       const double error = error_of(request);
       record.cost = {{"frame_ms", {{"median", 100.0 - error}}}};
@@ -132,6 +139,7 @@ class FakeRenders : public RenderService {
   }
 
   int submitted = 0;
+  bool another_program = false;  ///< draws other pictures of the same requests
   /// Error of a measured picture; its time is 100 ms less that many.
   std::function<double(const nlohmann::json&)> error_of = [](const auto&) { return 1.0; };
   std::string in_trouble;  ///< why nothing can be drawn
