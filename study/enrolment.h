@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "study/study.h"
@@ -34,6 +36,23 @@ enum class PlaceState { open, completed, dropped };
 /// state of place p.
 std::size_t next_place(std::span<const PlaceState> places);
 
+/// Random permutations of one seed, kept: neighbouring places share them, and drawing one (seeding a
+/// Mersenne twister) costs a hundred times what a plan takes otherwise. Not thread-safe.
+class Permutations {
+ public:
+  explicit Permutations(std::uint64_t seed_) : seed(seed_) {}
+
+  /// 0 .. count - 1 in random order; a pure function of seed, stream, index and count. Valid until
+  /// the next call.
+  const std::vector<std::size_t>& of(std::uint32_t stream, std::size_t index, std::size_t count);
+
+  const std::uint64_t seed;
+
+ private:
+  static constexpr std::size_t most_kept = 32768;  // some 4 MB
+  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, std::vector<std::size_t>> kept;
+};
+
 /// Order of pages and of pictures for a place. All places of a study share one `seed`; consecutive
 /// places walk through Williams squares (Williams 1949), so that over places 0..N-1 how often a
 /// page or picture stands at a position differs by at most one, and over whole squares every
@@ -41,6 +60,9 @@ std::size_t next_place(std::span<const PlaceState> places);
 /// the seed, each page on its own, so that the order of pages tells nothing about the order of
 /// pictures.
 EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t place);
+
+/// The same with permutations that are kept for the next place.
+EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations, std::size_t place);
 
 /// The page behind a planned page (the practice page where it is one).
 const Page& page_of(const Study& study, const PlannedPage& planned);

@@ -31,11 +31,9 @@ std::string request_key(const nlohmann::json& render_request) {
 }
 
 study::EnrolmentPlan FrozenStudy::plan(std::size_t place) const {
-  const std::lock_guard lock(plans_mutex);
-  const auto known = plans.find(place);
-  if (known != plans.end()) return known->second;
-  if (plans.size() == most_plans) plans.clear();
-  return plans[place] = study::plan_enrolment(study, seed, place);
+  const std::lock_guard lock(mutex);
+  if (!permutations || permutations->seed != seed) permutations.emplace(seed);
+  return study::plan_enrolment(study, *permutations, place);
 }
 
 std::string FrozenStudy::picture(const study::PlannedPage& planned, std::size_t slot) const {

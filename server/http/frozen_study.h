@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +23,7 @@ struct FrozenStudy {
   int version = 1;
   std::uint64_t seed = 0;
 
-  /// What the person at a place is shown, and in which order. Thread-safe; the last ones are kept,
-  /// since a plan is asked for several times in a row.
+  /// What the person at a place is shown, and in which order. Thread-safe.
   study::EnrolmentPlan plan(std::size_t place) const;
 
   /// SHA-256 of the picture at a slot, or `lost_picture` in a draft and where the database's row is
@@ -40,9 +40,8 @@ struct FrozenStudy {
   PagePictures practice;
 
  private:
-  static constexpr std::size_t most_plans = 20000;
-  mutable std::mutex plans_mutex;
-  mutable std::map<std::size_t, study::EnrolmentPlan> plans;  ///< by place
+  mutable std::mutex mutex;
+  mutable std::optional<study::Permutations> permutations;
 };
 
 /// Name of a render request in the table of frozen pictures.

@@ -1,8 +1,19 @@
 #include "server/storage/connection.h"
 
+#include <sqlite3.h>
+
 #include <stdexcept>
 
 namespace penumbra::server::storage {
+
+Connection::Connection(const std::string& path, int flags, int busy_ms)
+    : SQLite::Database(path, flags, busy_ms) {
+  // Without this, a statement whose plan could depend on a bound value is compiled again at each
+  // binding, and keeping it prepared gains nothing.
+  const int state =
+      sqlite3_db_config(getHandle(), SQLITE_DBCONFIG_ENABLE_QPSG, 1, static_cast<int*>(nullptr));
+  if (state != SQLITE_OK) throw SQLite::Exception(getHandle(), state);
+}
 
 Connection::Query::Query(Prepared& prepared_) : prepared(prepared_) {
   if (prepared.in_use) throw std::logic_error("a kept statement is in use already");

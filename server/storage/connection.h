@@ -17,7 +17,8 @@ class Connection : public SQLite::Database {
   };
 
  public:
-  using SQLite::Database::Database;
+  /// `flags` of sqlite3_open_v2; waits up to `busy_ms` for locks. Throws SQLite::Exception.
+  Connection(const std::string& path, int flags, int busy_ms);
 
   /// A kept statement for the length of a block; reset at its end.
   class Query {

@@ -94,10 +94,10 @@ std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fr
 std::vector<AnswerRecord> answers_of(Database& database, Connection& connection,
                                      std::int64_t participant, bool current) {
   auto query = connection.query(
-      "SELECT page, answer_id, body, answered_at, intact, row FROM checked_answers "
-      "WHERE participant = ? AND is_current = ? ORDER BY page, row");
+      std::string("SELECT page, answer_id, body, answered_at, intact, row FROM checked_answers "
+                  "WHERE participant = ? AND is_current = ") +
+      (current ? "1" : "0") + " ORDER BY page, row");
   query->bind(1, participant);
-  query->bind(2, current ? 1 : 0);
   std::vector<AnswerRecord> found;
   while (query->executeStep()) {
     if (query->getColumn(4).getInt() == 0) {

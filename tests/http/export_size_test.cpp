@@ -33,6 +33,14 @@ std::string whole(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+std::shared_ptr<FrozenStudy> thesis_study() {
+  auto frozen = std::make_shared<FrozenStudy>();
+  frozen->study = study::parse_study(whole(PENUMBRA_SOURCE_DIR "/studies/thesis-2007.json"));
+  frozen->hash = study::study_hash(frozen->study);
+  frozen->seed = 1;
+  return frozen;
+}
+
 /// Enrols people and stores their answers; many at a time, so that they share commits.
 void fill(storage::Participants& participants, const FrozenStudy& frozen, std::size_t count) {
   const auto people = study::simulate_people(count, count / 10, count / 20, 1);
@@ -74,10 +82,7 @@ TEST(LargeExport, LeavesInLittleMemory) {
   const char* people = std::getenv("PENUMBRA_EXPORT_PEOPLE");
   const std::size_t count = people != nullptr ? std::stoul(people) : 700;  // 37,800 rows
   const TemporaryFolder folder;
-  auto frozen = std::make_shared<FrozenStudy>();
-  frozen->study = study::parse_study(whole(PENUMBRA_SOURCE_DIR "/studies/thesis-2007.json"));
-  frozen->hash = study::study_hash(frozen->study);
-  frozen->seed = 1;
+  auto frozen = thesis_study();
   storage::Database database(folder.path / "penumbra.sqlite");
   storage::Studies studies(database);
   studies.put_draft(frozen->study.id, frozen->study.document, frozen->seed, "2026-01-01");
@@ -85,6 +90,7 @@ TEST(LargeExport, LeavesInLittleMemory) {
   studies.open(frozen->study.id, 1, "2026-01-01");
   storage::Participants participants(database);
   fill(participants, *frozen, count);
+  frozen = thesis_study();  // as a server that was just started has it
   timed("responses.csv",
         [&] { StudyExport(participants, frozen).write_responses(folder.path / "responses.csv"); });
   StudyExport exported(participants, frozen);
