@@ -1,5 +1,6 @@
 #include "study/response_fields.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -16,6 +17,10 @@ bool is_dangerous(std::string_view cell) {
   if (cell.empty()) return false;
   if (controls.find(cell.front()) != std::string_view::npos) return true;
   cell.remove_prefix(std::min(cell.find_first_not_of(' '), cell.size()));
+  const auto is_plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  if (!cell.empty() && is_plain(cell.front())) return false;  // nearly every cell
   for (const std::string_view begin : {"=", "+", "-", "@", "\uFF1D", "\uFF0B", "\uFF0D", "\uFF20"})
     if (cell.starts_with(begin)) return true;
   return false;
@@ -253,7 +258,8 @@ const std::vector<Column>& response_columns() {
 
 std::string csv_text(std::string_view cell) {
   std::string text = is_dangerous(cell) ? "'" + std::string(cell) : std::string(cell);
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const auto needs_quotes = [](char c) { return c == ',' || c == '"' || c == '\r' || c == '\n'; };
+  if (std::none_of(text.begin(), text.end(), needs_quotes)) return text;
   std::string quoted = "\"";
   for (const char character : text) {
     if (character == '"') quoted += '"';

@@ -1,5 +1,7 @@
 #include "server/storage/participants.h"
 
+#include <future>
+
 #include "renderer/error.h"
 #include "server/jobs/digest.h"
 #include "server/storage/participant_rows.h"
@@ -342,11 +344,12 @@ bool Participants::exclude(const std::string& study, const std::string& pseudony
 
 void Participants::each(const std::string& study, int version,
                         const std::function<void(const ParticipantData&)>& take) {
-  constexpr int portion = 200;
+  constexpr int portion = 100;
   std::int64_t last = 0;
-  while (true) {
-    int seen = 0;
-    const auto people = database.read([&](Connection& connection) {
+  int seen = 0;
+  const auto read_portion = [&] {
+    seen = 0;
+    return database.read([&](Connection& connection) {
       SQLite::Statement query(connection,
                               std::string("SELECT ") + participant_columns +
                                   " FROM checked_participants WHERE study = ? AND version = ? "
@@ -369,9 +372,15 @@ void Participants::each(const std::string& study, int version,
       }
       return found;
     });
+  };
+  // The next portion is read while this one is taken.
+  auto people = read_portion();
+  while (seen == portion) {
+    auto next = std::async(std::launch::async, read_portion);
     for (const auto& person : people) take(person);
-    if (seen < portion) return;
+    people = next.get();
   }
+  for (const auto& person : people) take(person);
 }
 
 bool Participants::is_full(const std::string& study, int version, std::uint32_t quota) {
