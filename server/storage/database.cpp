@@ -15,7 +15,6 @@ namespace {
 
 constexpr int busy_ms = 3000;  // a lock held longer than this is somebody else's trouble
 constexpr std::size_t largest_batch = 256;  // changes that share one commit
-constexpr int most_readers = 16;            // each compiles its views and statements once
 constexpr int purge_busy_ms = 20;           // answers wait no longer for a withdrawal to be cleared
 constexpr auto purge_pause = std::chrono::milliseconds(250);
 constexpr std::int64_t log_limit = 4
@@ -51,9 +50,30 @@ class Savepoint {
   bool released = false;
 };
 
+/// Reading is bound by processors: more connections than those only wait for each other.
+std::size_t most_readers() {
+  return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 4, 16);
+}
+
+/// Without statistics of its memory, which all connections would keep under one lock.
+void configure_sqlite() {
+  static const int state = sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+  if (state != SQLITE_OK) spdlog::debug("SQLite keeps statistics of its memory: code {}", state);
+}
+
 }  // namespace
 
-Database::Database(const std::filesystem::path& file) : path(file) {
+Database::Database(const std::filesystem::path& file)
+    : path(file),
+      readers(
+          [this] {
+            auto connection =
+                std::make_unique<Connection>(path.string(), SQLite::OPEN_READONLY, busy_ms);
+            prepare(*connection);
+            return connection;
+          },
+          most_readers()) {
+  configure_sqlite();
   // A damaged file is kept for repair: the server starts, says so, and writes nothing.
   try {
     guarded([&] { open_writer(); });
@@ -318,38 +338,6 @@ std::uint64_t Database::log_bytes() const {
   std::error_code failure;
   const auto bytes = std::filesystem::file_size(path.string() + "-wal", failure);
   return failure ? 0 : bytes;
-}
-
-Database::Lease::Lease(Database& owner_) : owner(owner_) {
-  {
-    std::unique_lock lock(owner.readers_mutex);
-    owner.reader_returned.wait(
-        lock, [&] { return !owner.readers.empty() || owner.reader_count < most_readers; });
-    if (!owner.readers.empty()) {
-      connection = std::move(owner.readers.back());
-      owner.readers.pop_back();
-      return;
-    }
-    ++owner.reader_count;
-  }
-  try {
-    owner.guarded([&] {
-      connection =
-          std::make_unique<Connection>(owner.path.string(), SQLite::OPEN_READONLY, busy_ms);
-      owner.prepare(*connection);
-    });
-  } catch (...) {
-    const std::lock_guard lock(owner.readers_mutex);
-    --owner.reader_count;
-    owner.reader_returned.notify_one();
-    throw;
-  }
-}
-
-Database::Lease::~Lease() {
-  const std::lock_guard lock(owner.readers_mutex);
-  owner.readers.push_back(std::move(connection));
-  owner.reader_returned.notify_one();
 }
 
 }  // namespace penumbra::server::storage

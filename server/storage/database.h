@@ -17,6 +17,7 @@
 #include "server/storage/connection.h"
 #include "server/storage/examination.h"
 #include "server/storage/journal.h"
+#include "server/storage/readers.h"
 #include "server/storage/seals.h"
 
 namespace penumbra::server::storage {
@@ -56,14 +57,14 @@ class Database {
     }
   }
 
-  /// Runs `work(Connection&)` on a read-only connection, in a snapshot. There are a few connections
-  /// (`most_readers`): `work` must not read in turn.
+  /// Runs `work(Connection&)` on a read-only connection, in a snapshot. There are a few connections:
+  /// `work` must not read in turn.
   template <class Work>
   auto read(Work work) {
-    Lease lease(*this);
     return guarded([&] {
-      SQLite::Transaction snapshot(*lease.connection);
-      return work(*lease.connection);
+      Readers::Lease reader(readers);
+      SQLite::Transaction snapshot(*reader);
+      return work(*reader);
     });
   }
 
@@ -97,13 +98,6 @@ class Database {
     std::binary_semaphore over{0};
   };
   using Batch = std::vector<std::shared_ptr<Pending>>;
-  /// Takes a reading connection and puts it back.
-  struct Lease {
-    explicit Lease(Database& owner);
-    ~Lease();
-    Database& owner;
-    std::unique_ptr<Connection> connection;
-  };
 
   void open_writer();
   bool holds_a_study() const;
@@ -146,10 +140,7 @@ class Database {
   std::condition_variable queue_changed;
   std::deque<std::shared_ptr<Pending>> queue;
   bool stopping = false;
-  std::mutex readers_mutex;
-  std::condition_variable reader_returned;
-  std::vector<std::unique_ptr<Connection>> readers;  ///< idle ones
-  int reader_count = 0;                              ///< idle ones and those in use
+  Readers readers;
   std::thread thread;
 };
 

@@ -314,9 +314,8 @@ TEST_F(Durability, AClockThatJumpsMovesNoDeadline) {
   auto all = options();
   all.environment = system.environment();
   ServerProcess server(all);
-  const json slow = {{"scene", "boxes"}, {"technique", "reference"}, {"width", 600},
-                     {"height", 600},    {"light_samples", 1024},    {"supersampling", 16}};
-  const auto posted = server.client().Post("/api/v1/renders", slow.dump(), "application/json");
+  const auto posted =
+      server.client().Post("/api/v1/renders", slow_render(1000).dump(), "application/json");
   ASSERT_TRUE(posted);
   const std::string at = "/api/v1/renders/" + json::parse(posted->body)["id"].get<std::string>();
   for (const long step : {3600L, -3600L, -86400L}) {

@@ -18,12 +18,6 @@ namespace {
 
 using Load = WithStudy;
 
-/// A render that takes many seconds on any machine.
-json slow_render(int width) {
-  return {{"scene", "boxes"}, {"technique", "reference"}, {"width", width},
-          {"height", 1000},   {"supersampling", 16},      {"light_samples", 1024}};
-}
-
 json quick_render(int width) {
   return {{"scene", "half-plane"}, {"technique", "none"}, {"width", width}, {"height", 16}};
 }
@@ -205,7 +199,7 @@ TEST_F(Load, ARenderStopsWhenItsOnlyClientIsGoneAndNotForABystander) {
   impatient.set_read_timeout(1);
   EXPECT_FALSE(
       impatient.Get("/api/v1/image?scene=boxes&technique=reference&width=1001&height=1000&"
-                    "supersampling=16&light_samples=1024"));
+                    "supersampling=16&light_samples=65536"));
   server.researcher().Delete(at);
   const auto quick = server.client().Get("/api/v1/image?scene=half-plane&technique=none&width=16");
   ASSERT_TRUE(quick);

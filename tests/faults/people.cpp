@@ -59,6 +59,11 @@ void copy_published(const std::filesystem::path& data) {
   std::filesystem::copy(original, data, std::filesystem::copy_options::recursive);
 }
 
+json slow_render(int width) {
+  return {{"scene", "boxes"}, {"technique", "reference"}, {"width", width},
+          {"height", 1000},   {"supersampling", 16},      {"light_samples", 65536}};
+}
+
 std::string random_uuid() {
   static std::mutex mutex;
   static std::mt19937_64 random(std::random_device{}());

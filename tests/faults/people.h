@@ -26,6 +26,9 @@ void copy_published(const std::filesystem::path& data);
 
 std::string random_uuid();
 
+/// A render that takes many seconds on any machine, fast GPUs too, 1000 pixels high.
+json slow_render(int width);
+
 /// Somebody who takes part.
 struct Person {
   std::string token;
