@@ -133,16 +133,19 @@ bool read_observation(const std::string& key, const json& value, std::size_t slo
 
 }  // namespace
 
-Answer parse_answer(const json& body, const Study& study, std::size_t slots, bool practice) {
+Answer parse_answer(const json& body, const Arm& arm, std::size_t slots, bool practice) {
   if (!body.is_object()) throw bad_value("", "an answer is a JSON object");
   Answer answer;
   answer.answer_id = read_uuid(body);
-  const bool numeric = study.widget == Widget::numeric;
+  const bool numeric = arm.widget == Widget::numeric;
   const std::string wanted = numeric ? "digits" : "shelves";
   if (numeric) {
     answer.digits = read_slots(body, wanted, slots, 1, 9);
+    for (const int digit : answer.digits)
+      answer.order.push_back(digit_from_best(digit, arm.best_digit));
   } else {
     answer.shelves = read_slots(body, wanted, slots, 0, static_cast<int>(slots) - 1);
+    answer.order = answer.shelves;
   }
   if (body.contains("difficulty")) {
     answer.difficulty = read_integer(body.at("difficulty"), "difficulty", 1, 5);
@@ -156,7 +159,7 @@ Answer parse_answer(const json& body, const Study& study, std::size_t slots, boo
     }
   }
   if (answer.observations.all_same) {
-    const auto& order = answer.order();
+    const auto& order = answer.order;
     if (std::adjacent_find(order.begin(), order.end(), std::not_equal_to<>()) != order.end()) {
       throw bad_value("all_same", "the pictures do not share one place");
     }

@@ -37,24 +37,23 @@ struct Observations {
 struct Answer {
   std::string answer_id;     ///< UUID, lower case
   std::vector<int> shelves;  ///< per slot, 0 most realistic; empty for digits
-  std::vector<int> digits;   ///< per slot, as typed, 1 most realistic; empty for shelves
-  int difficulty = 0;        ///< 1 (hard to see) .. 5 (easy); 0 on a practice page without one
+  std::vector<int> digits;   ///< per slot, as typed; empty for shelves
+  std::vector<int>
+      order;           ///< per slot: equal numbers are equal ranks, the lowest is most realistic
+  int difficulty = 0;  ///< 1 (hard to see) .. 5 (easy); 0 on a practice page without one
   Observations observations;
-
-  /// Whichever of the two was given: equal numbers are equal ranks, the lowest is most realistic.
-  const std::vector<int>& order() const { return shelves.empty() ? digits : shelves; }
 };
 
 /// Checks the body of PUT .../pages/{page}:
 ///   answer_id    UUID
-///   shelves      {"0": 0, "1": 2, ...}: each slot's shelf, 0 .. slots - 1    (widget shelves)
-///   digits       {"0": 1, "1": 9, ...}: each slot's digit, 1 .. 9            (widget numeric)
+///   shelves      {"0": 0, "1": 2, ...}: each slot's shelf, 0 .. slots - 1    (arm of shelves)
+///   digits       {"0": 1, "1": 9, ...}: each slot's digit, 1 .. 9            (numeric arm)
 ///   difficulty   1 .. 5, required unless `practice`
 ///   active_ms, total_ms, enlargements, flips, swaps, blurs, load_failures, all_same,
 ///   order_shown [slot..], window {width, height}, screen {width, height}, device_pixel_ratio,
 ///   started_at, answered_at (ISO 8601, the browser's clock)    optional
 /// Every slot is required. Throws bad_value naming the field: `shelves.3`, `difficulty`, ...
-Answer parse_answer(const nlohmann::json& body, const Study& study, std::size_t slots,
+Answer parse_answer(const nlohmann::json& body, const Arm& arm, std::size_t slots,
                     bool practice = false);
 
 /// Equal but for key order and number notation: the same answer sent again.

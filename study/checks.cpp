@@ -68,12 +68,12 @@ PersonChecks checks_of(const Study& study, const EnrolmentPlan& plan,
     const Page& page = page_of(study, planned);
     const bool practice = planned.kind == PageKind::practice;
     if (!practice && !page.expected) continue;
-    const Answer answer = parse_answer(body, study, planned.slots.size(), practice);
+    const Answer answer = parse_answer(body, arm_of(study, plan), planned.slots.size(), practice);
     if (practice)
-      checks.practice_right = practice_is_right(planned, answer.order());
+      checks.practice_right = practice_is_right(planned, answer.order);
     else
       checks.pages.push_back({name_of(page, planned.kind), page.expected->all_same,
-                              meets(*page.expected, page, planned, answer.order())});
+                              meets(*page.expected, page, planned, answer.order)});
   }
   if (details.contains("patches_seen")) checks.patches_seen = details.at("patches_seen").get<int>();
   return checks;

@@ -47,6 +47,8 @@ void keep_apart(std::vector<PlannedPage>& shown, const std::vector<std::size_t>&
     std::swap(shown[shown.size() - 2], shown[shown.size() - 1]);
 }
 
+constexpr std::uint32_t stream_arms = 1000;  // beyond those of 100 pages and their repeats
+
 }  // namespace
 
 const std::vector<std::size_t>& Permutations::of(std::uint32_t stream, std::size_t index,
@@ -68,8 +70,12 @@ EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t
   return plan_enrolment(study, permutations, place);
 }
 
-EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations, std::size_t place) {
-  EnrolmentPlan plan{permutations.seed, place, {}};
+EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations,
+                             std::size_t given_place) {
+  const std::size_t arms = study.arms.size();
+  const std::size_t place = given_place / arms;  // within the arm
+  EnrolmentPlan plan{permutations.seed, given_place, 0, {}};
+  if (arms > 1) plan.arm = permutations.of(stream_arms, place, arms)[given_place % arms];
   // Streams: 0 order of pages, 1 practice, 2 order of repeats, then one per page and repeat.
   const auto first_stream = std::uint32_t{3};
   const auto pages = static_cast<std::uint32_t>(study.pages.size());
@@ -79,8 +85,9 @@ EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations, std
   }
   for (const std::size_t page : balanced_order(study.pages.size(), permutations, 0, place)) {
     const auto stream = first_stream + static_cast<std::uint32_t>(page);
-    plan.pages.push_back({PageKind::ranking, page,
-                          balanced_order(study.pages[page].pictures.size(), permutations, stream, place)});
+    plan.pages.push_back(
+        {PageKind::ranking, page,
+         balanced_order(study.pages[page].pictures.size(), permutations, stream, place)});
   }
   if (!study.repeats.empty()) {
     auto order = balanced_order(study.repeats.size(), permutations, 2, place);
@@ -94,6 +101,10 @@ EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations, std
     }
   }
   return plan;
+}
+
+const Arm& arm_of(const Study& study, const EnrolmentPlan& plan) {
+  return study.arms.at(plan.arm);
 }
 
 const char* kind_name(PageKind kind) {

@@ -26,6 +26,7 @@ struct PlannedPage {
 struct EnrolmentPlan {
   std::uint64_t seed = 0;  ///< the study's, recorded with every participant
   std::size_t place = 0;
+  std::size_t arm = 0;  ///< index into Study::arms
   std::vector<PlannedPage> pages;
 };
 
@@ -36,8 +37,8 @@ enum class PlaceState { open, completed, dropped };
 /// state of place p.
 std::size_t next_place(std::span<const PlaceState> places);
 
-/// Random permutations of one seed, kept: neighbouring places share them, and drawing one (seeding a
-/// Mersenne twister) costs a hundred times what a plan takes otherwise. Not thread-safe.
+/// Random permutations of one seed, kept: neighbouring places share them, and drawing one (seeding
+/// a Mersenne twister) costs a hundred times what a plan takes otherwise. Not thread-safe.
 class Permutations {
  public:
   explicit Permutations(std::uint64_t seed_) : seed(seed_) {}
@@ -58,11 +59,15 @@ class Permutations {
 /// page or picture stands at a position differs by at most one, and over whole squares every
 /// picture follows every other equally often. Squares are relabelled and their rows shuffled from
 /// the seed, each page on its own, so that the order of pages tells nothing about the order of
-/// pictures.
+/// pictures. With several arms, every run of as many places holds each arm once, in random order
+/// (permuted blocks), and its people see the same orders: each arm walks through the same squares.
 EnrolmentPlan plan_enrolment(const Study& study, std::uint64_t seed, std::size_t place);
 
 /// The same with permutations that are kept for the next place.
 EnrolmentPlan plan_enrolment(const Study& study, Permutations& permutations, std::size_t place);
+
+/// How the person gives ranks.
+const Arm& arm_of(const Study& study, const EnrolmentPlan& plan);
 
 /// The page behind a planned page (the practice page where it is one).
 const Page& page_of(const Study& study, const PlannedPage& planned);

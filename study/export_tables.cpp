@@ -48,6 +48,8 @@ const std::vector<Column>& participant_columns() {
   static const std::vector<Column> list{
       {"participant", "text", "pseudonym"},
       {"place", "integer", "in the balanced orders of pages and pictures, from 0"},
+      {"arm", "text",
+       "way of giving ranks that the participant was assigned to; empty where there is one only"},
       {"entered_at", "text", "ISO 8601, UTC"},
       {"last_seen_at", "text", "when the last answer was stored, ISO 8601, UTC"},
       {"completed_at", "text", "ISO 8601, UTC; empty where the participant stopped early"},
@@ -184,6 +186,7 @@ std::string ParticipantsTable::header() const {
 void ParticipantsTable::append(const ParticipantRow& row, std::string& text) const {
   std::vector<std::string> cells{row.participant,
                                  std::to_string(row.place),
+                                 row.arm,
                                  row.entered_at,
                                  row.seen_at,
                                  row.completed_at,

@@ -50,6 +50,7 @@ class WideTable {
 struct ParticipantRow {
   std::string participant;
   std::size_t place = 0;
+  std::string arm;
   std::string entered_at;
   std::string seen_at;
   std::string completed_at;  ///< empty: stopped early, or is still at it

@@ -132,6 +132,18 @@ Field rank_field() {
       [](ResponseRow& row, const std::string& cell) { row.rank = read_number(cell, 1.0, 1e6); }};
 }
 
+Field best_digit_field() {
+  Field field =
+      integer_field("best_digit", "where digits were typed: the one, 1 or 9, of most realistic",
+                    &ResponseRow::best_digit, 1, 9);
+  field.read = [read = field.read](ResponseRow& row, const std::string& cell) {
+    read(row, cell);
+    if (row.best_digit && *row.best_digit != 1 && *row.best_digit != 9)
+      throw bad_value("", "1 or 9 expected, found `" + cell + "`");
+  };
+  return field;
+}
+
 /// What is written and never read back: nothing that is computed from rows needs it.
 Field page_field(const char* name, const char* type, const char* meaning,
                  std::function<std::string(const PageFacts&)> write) {
@@ -180,6 +192,10 @@ const std::vector<Field>& response_fields() {
       text_field("study", "id of the study", &Row::study),
       text_field("study_hash", "SHA-256 of the study as it was published", &Row::study_hash),
       text_field("participant", "pseudonym", &Row::participant, true),
+      text_field("arm",
+                 "way of giving ranks that the participant was assigned to; empty where the study "
+                 "has one only",
+                 &Row::arm),
       count_field("page_index", "position at which the participant saw the page, from 0",
                   &Row::page_index),
       count_field("repeat", "0 first showing, 1 second, which measures reliability only",
@@ -199,6 +215,7 @@ const std::vector<Field>& response_fields() {
       integer_field("shelf_0_is_most_realistic", "shelf the picture was put on", &Row::shelf, 0,
                     max_cell_count),
       integer_field("digit_as_typed", "1 to 9, where digits were typed", &Row::digit, 1, 9),
+      best_digit_field(),
       integer_field("difficulty_1_hard_to_see_5_easy", "answer about the page", &Row::difficulty, 1,
                     5, true),
       real_field("weight", "of the page in weighted means; the difficulty unless given",

@@ -3,11 +3,11 @@
 namespace penumbra::study {
 
 std::vector<ResponseRow> response_rows(const Study& study, const std::string& hash,
-                                       const std::string& participant, const PlannedPage& planned,
-                                       int page_index, const Answer& answer,
-                                       const std::string& answered_at) {
+                                       const std::string& participant, const Arm& arm,
+                                       const PlannedPage& planned, int page_index,
+                                       const Answer& answer, const std::string& answered_at) {
   const Page& page = page_of(study, planned);
-  const auto ranks = doubled_mid_ranks(answer.order());
+  const auto ranks = doubled_mid_ranks(answer.order);
   const auto facts = std::make_shared<PageFacts>();
   facts->seen = answer.observations;
   std::vector<ResponseRow> rows;
@@ -17,6 +17,7 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
     row.study = study.id;
     row.study_hash = hash;
     row.participant = participant;
+    row.arm = arm.id;
     row.page_index = page_index;
     row.repeat = planned.kind == PageKind::repeat ? 1 : 0;
     row.scene = page.id;
@@ -27,7 +28,10 @@ std::vector<ResponseRow> response_rows(const Study& study, const std::string& ha
     row.slot = static_cast<int>(slot);
     row.rank = ranks.at(slot) / 2.0;
     if (!answer.shelves.empty()) row.shelf = answer.shelves[slot];
-    if (!answer.digits.empty()) row.digit = answer.digits[slot];
+    if (!answer.digits.empty()) {
+      row.digit = answer.digits[slot];
+      row.best_digit = arm.best_digit;
+    }
     if (answer.difficulty > 0) {
       row.difficulty = answer.difficulty;
       row.weight = answer.difficulty;

@@ -25,6 +25,7 @@ struct ResponseRow {
   std::string study;
   std::string study_hash;
   std::string participant;  ///< pseudonym
+  std::string arm;          ///< of the study; empty where it has one way of giving ranks only
   int page_index = 0;       ///< position at which the participant saw the page, from 0
   int repeat = 0;           ///< 0 first showing, 1 second
   std::string scene;        ///< the page's id, which is the scene's unless the study says otherwise
@@ -35,7 +36,8 @@ struct ResponseRow {
   std::optional<int> slot;  ///< position on the page, from 0
   double rank = 0.0;        ///< rank_1_is_most_realistic, mid-rank where equal
   std::optional<int> shelf;
-  std::optional<int> digit;
+  std::optional<int> digit;       ///< as typed
+  std::optional<int> best_digit;  ///< where digits were typed: 1 or 9, the most realistic
   std::optional<int> difficulty;
   std::optional<double> weight;
   std::optional<double> active_ms;
@@ -52,9 +54,9 @@ struct ResponseRow {
 
 /// Rows of one answered page. `page_index` is the position in the plan.
 std::vector<ResponseRow> response_rows(const Study& study, const std::string& hash,
-                                       const std::string& participant, const PlannedPage& planned,
-                                       int page_index, const Answer& answer,
-                                       const std::string& answered_at);
+                                       const std::string& participant, const Arm& arm,
+                                       const PlannedPage& planned, int page_index,
+                                       const Answer& answer, const std::string& answered_at);
 
 /// Name and meaning of every column, in the order of the file: header, writer, parser and
 /// codebook.csv are derived from it.

@@ -141,10 +141,13 @@ json simulate_answer(const Study& study, const SimulatedPerson& person, const En
     std::fill(shelves.begin(), shelves.end(), 0);
   const int last = *std::max_element(shelves.begin(), shelves.end());
   const bool inverted = person.kind == PersonKind::inverted;
+  const Arm& arm = arm_of(study, plan);
+  const bool numeric = arm.widget == Widget::numeric;
   json places = json::object();
   for (std::size_t slot = 0; slot < shelves.size(); ++slot) {
     const int shelf = inverted ? last - shelves[slot] : shelves[slot];
-    places[std::to_string(slot)] = study.widget == Widget::numeric ? std::min(shelf + 1, 9) : shelf;
+    places[std::to_string(slot)] =
+        numeric ? digit_from_best(std::min(shelf + 1, 9), arm.best_digit) : shelf;
   }
   Random other(person.seed, stream_other, page_index);
   Random uuid(person.seed, stream_uuid, page_index);
@@ -152,7 +155,7 @@ json simulate_answer(const Study& study, const SimulatedPerson& person, const En
   const double active =
       1000.0 * static_cast<double>(shelves.size()) * (4.0 + 6.0 * other.uniform());
   return {{"answer_id", draw_uuid(uuid)},
-          {study.widget == Widget::numeric ? "digits" : "shelves", places},
+          {numeric ? "digits" : "shelves", places},
           {"difficulty", 1 + static_cast<int>(other.below(5))},
           {"active_ms", std::round(active)},
           {"total_ms", std::round(active * (1.0 + 0.2 * other.uniform()))}};
@@ -172,9 +175,10 @@ std::vector<ResponseRow> simulate_responses(const Study& study,
       if (plan.pages[j].kind == PageKind::practice || !page_of(study, plan.pages[j]).counted())
         continue;
       const json body = simulate_answer(study, people[i], plan, j, preferences);
-      const Answer answer = parse_answer(body, study, plan.pages[j].slots.size());
+      const Arm& arm = arm_of(study, plan);
+      const Answer answer = parse_answer(body, arm, plan.pages[j].slots.size());
       const auto page_rows =
-          response_rows(study, hash, name, plan.pages[j], static_cast<int>(j), answer, "");
+          response_rows(study, hash, name, arm, plan.pages[j], static_cast<int>(j), answer, "");
       rows.insert(rows.end(), page_rows.begin(), page_rows.end());
     }
   }

@@ -266,6 +266,38 @@ void read_screening(const json& value, Screening& screening) {
   for (const auto& [name, target] : members) *target = value.value(name, *target);
 }
 
+Arm read_arm(const json& value, const std::string& path) {
+  Arm arm;
+  arm.id = value.value("id", "");
+  if (value.value("widget", "shelves") == "numeric") arm.widget = Widget::numeric;
+  if (value.contains("best_digit")) {
+    if (arm.widget != Widget::numeric)
+      throw bad_value(path + "best_digit", "only the widget `numeric` has digits");
+    arm.best_digit = value.at("best_digit").get<int>();
+  }
+  return arm;
+}
+
+/// The ways of giving ranks: one that the study itself has, or its arms.
+void read_arms(const json& document, FaultList& faults, Study& study) {
+  if (!document.contains("arms")) {
+    study.arms = {read_arm(document, "")};
+    study.arms.front().id.clear();  // the document's id is the study's
+    return;
+  }
+  for (const char* key : {"widget", "best_digit"})
+    if (document.contains(key)) faults.add(bad_value(key, "every arm has its own"));
+  const json& list = document.at("arms");
+  std::set<std::string> ids;
+  study.arms.clear();
+  for (std::size_t i = 0; i < list.size(); ++i)
+    faults.attempt([&] {
+      study.arms.push_back(read_arm(list[i], indexed("arms", i) + "."));
+      if (!ids.insert(study.arms.back().id).second)
+        throw bad_value(indexed("arms", i) + ".id", "two arms are called so");
+    });
+}
+
 void read_texts(const json& document, const TextReader& texts, Study& study) {
   study.title = texts.read(document.at("title"), "title");
   study.introduction = texts.read(document.at("introduction"), "introduction");
@@ -295,7 +327,7 @@ Study parse_study(const json& document) {
   FaultList faults;
   const TextReader texts(study.languages, faults);
   read_texts(document, texts, study);
-  if (document.value("widget", "shelves") == "numeric") study.widget = Widget::numeric;
+  faults.attempt([&] { read_arms(document, faults, study); });
   faults.attempt(
       [&] { read_picture_settings(document.value("picture", json::object()), study.picture); });
   faults.attempt([&] { read_pages(document, texts, faults, study); });
@@ -323,6 +355,10 @@ Study parse_study(const std::string& text) {
     throw bad_value("", std::string("number out of range: ") + error.what());
   }
   return parse_study(document);
+}
+
+const char* widget_name(Widget widget) {
+  return widget == Widget::numeric ? "numeric" : "shelves";
 }
 
 Picture reference_picture() {
@@ -365,11 +401,14 @@ json welcome_document(const Study& study) {
                             {"question", item.question},
                             {"options", options}});
   }
+  const bool one_widget = std::all_of(study.arms.begin(), study.arms.end(), [&](const Arm& arm) {
+    return arm.widget == study.arms.front().widget;
+  });
   return {{"study", study.id},
           {"consent_version", study.consent.version},
           {"languages", study.languages},
           {"texts", texts},
-          {"widget", study.widget == Widget::numeric ? "numeric" : "shelves"},
+          {"widget", one_widget ? json(widget_name(study.arms.front().widget)) : json(nullptr)},
           {"page_count", study.pages.size() + study.repeats.size() + (study.practice ? 1 : 0)},
           {"minimum_window", window},
           {"phones_allowed", study.phones_allowed},

@@ -16,6 +16,21 @@ using Texts = std::map<std::string, std::string>;
 /// How participants give their ranks: pictures on shelves, or typed digits as in 2007.
 enum class Widget { shelves, numeric };
 
+/// "shelves" or "numeric".
+const char* widget_name(Widget widget);
+
+/// A way of giving ranks. A study has one, or several to which people are assigned at random.
+struct Arm {
+  std::string id;  ///< empty where the study has one way only
+  Widget widget = Widget::shelves;
+  int best_digit = 1;  ///< of `numeric`: the digit, 1 or 9, of what is most realistic
+};
+
+/// A typed digit, counted from 1 for the most realistic.
+constexpr int digit_from_best(int digit, int best_digit) {
+  return best_digit == 1 ? digit : 10 - digit;
+}
+
 /// Where the converged picture of a page appears: nowhere, among the pictures to rank and unmarked,
 /// beside them and marked, or both.
 enum class ReferenceUse { none, hidden, shown, both };
@@ -146,7 +161,7 @@ struct Study {
   Texts introduction;
   Texts thanks;
   Consent consent;
-  Widget widget = Widget::shelves;
+  std::vector<Arm> arms{1};  ///< at least one
   Texts question;
   Texts most_label;   ///< most realistic end
   Texts least_label;  ///< least realistic end
@@ -204,9 +219,10 @@ std::vector<nlohmann::json> all_renders(const Study& study);
 
 /// What the participant's page may know before anybody has agreed: {"study", "consent_version",
 /// "languages", "texts": {language: {"title", "introduction", "consent", "question", "most_label",
-/// "least_label", "difficulty_question", "difficulty_labels": [5], "thanks"}}, "widget",
-/// "page_count", "minimum_window": {"width", "height"} | null, "phones_allowed", "id_parameters",
-/// "minimum_patches", "demographics": [{"id", "required", "question": {language: text}, "options":
+/// "least_label", "difficulty_question", "difficulty_labels": [5], "thanks"}}, "widget" (null where
+/// people get different ones), "page_count", "minimum_window": {"width", "height"} | null,
+/// "phones_allowed", "id_parameters", "minimum_patches", "demographics": [{"id", "required",
+/// "question": {language: text}, "options":
 /// [{"id", "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
 nlohmann::json welcome_document(const Study& study);
 

@@ -9,9 +9,10 @@
 namespace penumbra::server::http {
 
 // Files compiled into the program.
-std::span<const EmbeddedFile> embedded_api();      ///< schema/openapi.yaml
-std::span<const EmbeddedFile> embedded_studies();  ///< studies/*.json
-std::span<const EmbeddedFile> embedded_pages();    ///< web/**
+std::span<const EmbeddedFile> embedded_api();        ///< schema/openapi.yaml
+std::span<const EmbeddedFile> embedded_studies();    ///< studies/*.json
+std::span<const EmbeddedFile> embedded_templates();  ///< studies/templates/*.json
+std::span<const EmbeddedFile> embedded_pages();      ///< web/**
 
 /// schema/openapi.yaml as JSON. Merge keys (<<) are resolved.
 const nlohmann::json& api_document();

@@ -45,8 +45,9 @@ void put_answer(Call& call) {
   const auto page = page_at(call, plan);
   const auto& planned = plan.pages[page];
   const json body = call.json();
-  const auto answer = study::parse_answer(body, frozen->study, planned.slots.size(),
-                                          planned.kind == study::PageKind::practice);
+  const auto answer =
+      study::parse_answer(body, study::arm_of(frozen->study, plan), planned.slots.size(),
+                          planned.kind == study::PageKind::practice);
   check_not_ended(call.service, *frozen, person, answer.answer_id);
   const storage::AnswerRecord fresh{static_cast<int>(page), answer.answer_id, body, utc_now()};
   const auto make_reply = [&](const std::string& replaced, int answered) -> json {

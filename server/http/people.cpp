@@ -51,13 +51,15 @@ json participant_body(const FrozenStudy& frozen, const storage::ParticipantData&
                       const json& flags) {
   const auto& who = person.participant;
   const auto outcome = outcome_of(frozen, who, person.answers);
+  const auto plan = frozen.plan(who.place);
   return {{"participant", who.pseudonym},
+          {"arm", study::arm_of(frozen.study, plan).id},
           {"entered_at", who.entered_at},
           {"last_seen_at", who.seen_at},
           {"completed_at", who.completed_at.empty() ? json(nullptr) : json(who.completed_at)},
           {"outcome", outcome.empty() ? "started" : outcome},
           {"answered", person.answers.size()},
-          {"pages", frozen.plan(who.place).pages.size()},
+          {"pages", plan.pages.size()},
           {"language", who.language},
           {"test", who.test},
           {"excluded", person.excluded()},

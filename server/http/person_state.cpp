@@ -79,6 +79,7 @@ json enrolment_body(Service& service, const FrozenStudy& frozen,
   std::vector<json> answers(plan.pages.size());
   for (const auto& stored : stored_answers)
     answers.at(static_cast<std::size_t>(stored.page)) = stored.body;
+  const auto& arm = study::arm_of(frozen.study, plan);
   auto pages = json::array();
   for (std::size_t i = 0; i < plan.pages.size(); ++i)
     pages.push_back(page_body(frozen, person, plan.pages[i], i, answers[i]));
@@ -93,20 +94,22 @@ json enrolment_body(Service& service, const FrozenStudy& frozen,
     // With every page answered, taking part can be finished at any time.
     if (closes_at < utc_now() && stored_answers.size() < plan.pages.size()) status = "over";
   }
-  return {{"participant", person.token},
-          {"withdrawal_code", person.withdrawal_code},
-          {"study", person.study},
-          {"status", status.empty() ? "started" : status},
-          {"answered", stored_answers.size()},
-          {"closes_at", closes_at},
-          {"checks_end", study::can_screen_out(frozen.study)},
-          {"test", person.test},
-          {"language", person.language},
-          {"texts", study::welcome_document(frozen.study).at("texts").at(person.language)},
-          {"widget", frozen.study.widget == study::Widget::numeric ? "numeric" : "shelves"},
-          {"completion_code", ended ? json(completion.code) : json(nullptr)},
-          {"completion_url", ended ? json(completion.url) : json(nullptr)},
-          {"pages", pages}};
+  return {
+      {"participant", person.token},
+      {"withdrawal_code", person.withdrawal_code},
+      {"study", person.study},
+      {"status", status.empty() ? "started" : status},
+      {"answered", stored_answers.size()},
+      {"closes_at", closes_at},
+      {"checks_end", study::can_screen_out(frozen.study)},
+      {"test", person.test},
+      {"language", person.language},
+      {"texts", study::welcome_document(frozen.study).at("texts").at(person.language)},
+      {"widget", study::widget_name(arm.widget)},
+      {"best_digit", arm.widget == study::Widget::numeric ? json(arm.best_digit) : json(nullptr)},
+      {"completion_code", ended ? json(completion.code) : json(nullptr)},
+      {"completion_url", ended ? json(completion.url) : json(nullptr)},
+      {"pages", pages}};
 }
 
 storage::ParticipantRecord person_at(Call& call) {

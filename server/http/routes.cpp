@@ -99,6 +99,7 @@ const std::vector<Route>& routes() {
     add_picture_routes(all);
     add_export_routes(all);
     add_qr_code_routes(all);
+    add_template_routes(all);
     add_people_routes(all);
     add_enrolment_routes(all);
     add_participant_routes(all);

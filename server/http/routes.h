@@ -57,6 +57,7 @@ void add_study_routes(std::vector<Route>& table);
 void add_picture_routes(std::vector<Route>& table);
 void add_export_routes(std::vector<Route>& table);
 void add_qr_code_routes(std::vector<Route>& table);
+void add_template_routes(std::vector<Route>& table);
 void add_people_routes(std::vector<Route>& table);
 void add_enrolment_routes(std::vector<Route>& table);
 void add_participant_routes(std::vector<Route>& table);

@@ -116,6 +116,27 @@ json answers_per_page(Service& service, const storage::StudyRecord& record) {
   return list;
 }
 
+/// How many people each way of giving ranks has; empty where there is one only.
+json arms_body(Service& service, const storage::StudyRecord& record) {
+  auto list = json::array();
+  const auto study = study::parse_study(record.document);
+  if (study.arms.size() == 1) return list;
+  for (const auto& arm : study.arms)
+    list.push_back({{"arm", arm.id},
+                    {"widget", study::widget_name(arm.widget)},
+                    {"entered", 0},
+                    {"answered_all", 0}});
+  study::Permutations permutations(record.seed);
+  for (const auto& person : service.participants.progress(record.id, record.version)) {
+    const auto plan = study::plan_enrolment(study, permutations, person.place);
+    auto& arm = list[plan.arm];
+    arm["entered"] = arm["entered"].get<int>() + 1;
+    if (person.pages.size() == plan.pages.size())
+      arm["answered_all"] = arm["answered_all"].get<int>() + 1;
+  }
+  return list;
+}
+
 json body_of(Service& service, const storage::StudyRecord& record) {
   json body = summary_of(service, record);
   body["progress"] = progress_body(record);
@@ -123,6 +144,7 @@ json body_of(Service& service, const storage::StudyRecord& record) {
   body["seed"] = record.seed;
   body["grace_minutes"] = study::parse_study(record.document).grace_minutes;
   body["document"] = record.document;
+  body["arms"] = arms_body(service, record);
   body["scenes"] = answers_per_page(service, record);
   return body;
 }

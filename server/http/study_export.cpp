@@ -35,15 +35,16 @@ Pages pages_of(const FrozenStudy& frozen, const storage::ParticipantData& person
     for (const auto& earlier : person.replaced) ++before[earlier.page];
   Pages pages;
   const auto plan = frozen.plan(person.participant.place);
+  const auto& arm = study::arm_of(frozen.study, plan);
   for (const auto& stored : answers) {
     const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
     const int answers_before = current ? before[stored.page] : before[stored.page]++;
     if (planned.kind == study::PageKind::practice ||
         !study::page_of(frozen.study, planned).counted())
       continue;
-    const auto answer = study::parse_answer(stored.body, frozen.study, planned.slots.size());
+    const auto answer = study::parse_answer(stored.body, arm, planned.slots.size());
     pages.push_back(study::response_rows(frozen.study, frozen.hash, person.participant.pseudonym,
-                                         planned, stored.page, answer, stored.answered_at));
+                                         arm, planned, stored.page, answer, stored.answered_at));
     auto facts = std::make_shared<study::PageFacts>();
     facts->seen = answer.observations;
     facts->participant_completed = !person.participant.completed_at.empty();
@@ -88,6 +89,7 @@ json person_json(const FrozenStudy& frozen, const storage::ParticipantData& pers
                          {"reason", decision.reason},
                          {"at", decision.decided_at}});
   return {{"participant", who.pseudonym},
+          {"arm", study::arm_of(frozen.study, plan).id},
           {"entered_at", who.entered_at},
           {"completed_at", who.completed_at.empty() ? json(nullptr) : json(who.completed_at)},
           {"language", who.language},
@@ -103,14 +105,16 @@ study::ParticipantRow participant_row(const FrozenStudy& frozen,
                                       const study::PersonChecks& checks, const std::string& flags) {
   const auto& who = person.participant;
   const auto outcome = outcome_of(frozen, who, person.answers);
+  const auto plan = frozen.plan(who.place);
   return {who.pseudonym,
           who.place,
+          study::arm_of(frozen.study, plan).id,
           who.entered_at,
           who.seen_at,
           who.completed_at,
           outcome.empty() ? "started" : outcome,
           person.answers.size(),
-          frozen.plan(who.place).pages.size(),
+          plan.pages.size(),
           who.language,
           who.consent_version,
           who.test,

@@ -74,7 +74,7 @@ class ReportWriter {
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
            escaped(title) + "</title>\n<style>\n" + css + "</style>\n</head>\n<body>\n" +
-           element("h1", escaped(title)) + identity() + warnings() + asked() + people() +
+           element("h1", escaped(title)) + identity() + warnings() + asked() + people() + arms() +
            results() + sets() + pairs() + methods() + "</body>\n</html>\n";
   }
 
@@ -109,9 +109,9 @@ class ReportWriter {
     if (context.study != nullptr) {
       const Study& study = *context.study;
       text += paragraph(std::string("“") + text_of(study.question) + "” Pictures were " +
-                        (study.widget == Widget::numeric ? "given digits" : "put on shelves") +
-                        " from “" + text_of(study.most_label) + "” (rank 1) to “" +
-                        text_of(study.least_label) + "”; pictures could share a place.");
+                        ways_of_ranking(study) + " from “" + text_of(study.most_label) +
+                        "” (rank 1) to “" + text_of(study.least_label) +
+                        "”; pictures could share a place.");
       text += paragraph("About every page: “" + text_of(study.difficulty.question) + "” from 1 (“" +
                         text_of(study.difficulty.labels.front()) + "”) to 5 (“" +
                         text_of(study.difficulty.labels.back()) +
@@ -133,6 +133,15 @@ class ReportWriter {
                         " pages were put in order; rank 1 is most realistic, and pictures could "
                         "share a place. The study's document was not part of the data.");
     }
+    return text;
+  }
+
+  static std::string ways_of_ranking(const Study& study) {
+    std::set<std::string> ways;
+    for (const Arm& arm : study.arms)
+      ways.insert(arm.widget == Widget::numeric ? "given digits" : "put on shelves");
+    std::string text;
+    for (const auto& way : ways) text += (text.empty() ? "" : " or ") + way;
     return text;
   }
 
@@ -189,6 +198,34 @@ class ReportWriter {
     return paragraph("Flags are reasons to look again and change nothing by themselves: " + counts +
                      ".") +
            table("Flags", {" participant", " flag", "value", "threshold", " reason"}, rows);
+  }
+
+  /// What each way of giving ranks did to people, where there are several.
+  std::string arms() const {
+    if (!document.contains("arms")) return "";
+    const json& found = document.at("arms");
+    std::string rows;
+    for (const json& arm : found.at("list"))
+      rows += "<tr>" + row_head(arm.at("arm")) + cell(arm.at("participants").dump()) +
+              cell(arm.at("inverted").dump()) + cell(decimal(number(arm, "read_right"), 3)) +
+              cell(interval(arm, "ci95", 3)) + cell(decimal(number(arm, "mean_rho"), 2)) +
+              "</tr>\n";
+    std::string pairs;
+    for (const json& pair : found.at("comparisons"))
+      pairs += "<tr>" + row_head(pair.at("a")) + text_cell(pair.at("b")) +
+               cell(decimal(number(pair, "difference"), 3)) +
+               cell(probability(number(pair, "p_value"))) +
+               cell(probability(number(pair, "p_holm"))) + "</tr>\n";
+    return element("h2", "Ways of giving ranks") +
+           paragraph(
+               "People were assigned to one of them at random. Who is not flagged as inverted read "
+               "the scale right; agreement is the mean rank correlation with everybody else.") +
+           table(
+               "Arms",
+               {" arm", "people", "inverted", "share that read right", "95% interval", "agreement"},
+               rows) +
+           table("Differences of these shares, Fisher's exact test",
+                 {" arm", " other arm", "difference", "p", "p (Holm)"}, pairs);
   }
 
   std::string figure(const std::string& kind, const std::string& scene) const {

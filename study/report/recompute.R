@@ -8,6 +8,8 @@ rows <- read.csv(file, check.names = FALSE, encoding = "UTF-8", na.strings = "",
 if ("included" %in% names(rows)) rows <- rows[!toupper(rows$included) %in% c("FALSE", "0"), ]
 if ("repeat" %in% names(rows)) rows <- rows[is.na(rows[["repeat"]]) | rows[["repeat"]] == 0, ]
 digits <- rows$digit_as_typed
+# Counted from 1 for the most realistic.
+if (!is.null(digits) && !is.null(rows$best_digit)) digits <- ifelse(rows$best_digit %in% 9, 10 - digits, digits)
 as_typed <- !is.null(digits) && all(!is.na(digits))
 rows$value <- if (as_typed) digits else rows$rank_1_is_most_realistic
 

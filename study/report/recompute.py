@@ -72,6 +72,8 @@ def main():
     if "repeat" in rows:
         rows = rows[rows["repeat"].fillna(0) == 0]
     digits = rows.get("digit_as_typed")
+    if digits is not None and "best_digit" in rows:  # counted from 1 for the most realistic
+        digits = digits.where(rows["best_digit"] != 9, 10 - digits)
     as_typed = digits is not None and bool(digits.notna().all()) and len(rows) > 0
     rows = rows.assign(value=digits if as_typed else rows["rank_1_is_most_realistic"])
     print("scene,quantity,value")

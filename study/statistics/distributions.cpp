@@ -5,6 +5,7 @@
 #include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
@@ -14,6 +15,11 @@ namespace bm = boost::math;
 
 double chi_square_tail(double x, double df) {
   return bm::cdf(bm::complement(bm::chi_squared(df), std::max(x, 0.0)));
+}
+
+std::array<double, 2> clopper_pearson(double successes, double n) {
+  return {successes > 0.0 ? bm::ibeta_inv(successes, n - successes + 1.0, 0.025) : 0.0,
+          successes < n ? bm::ibeta_inv(successes + 1.0, n - successes, 0.975) : 1.0};
 }
 
 double f_tail(double x, double df1, double df2) {

@@ -10,6 +10,10 @@ double f_tail(double x, double df1, double df2);  ///< 0 for infinite x
 double normal_tail(double x);
 double normal_quantile(double p);  ///< P(X <= q) = p, 0 < p < 1
 
+/// 95 % interval of a probability after `successes` of `n` (Clopper and Pearson 1934); halves count
+/// as such.
+std::array<double, 2> clopper_pearson(double successes, double n);
+
 /// P(|T| > |t|), Student's t.
 double t_two_sided(double t, double df);
 

@@ -1,7 +1,6 @@
 #include "study/statistics/pairs.h"
 
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
 #include "study/statistics/distributions.h"
@@ -189,9 +188,8 @@ SignTest sign_test(const std::vector<double>& differences) {
   const double wins =
       0.5 * (n + static_cast<double>(result.wins_a) - static_cast<double>(result.wins_b));
   result.probability_a_better = wins / n;
+  result.ci95 = clopper_pearson(wins, n);
   namespace bm = boost::math;
-  result.ci95 = {wins > 0.0 ? bm::ibeta_inv(wins, n - wins + 1.0, 0.025) : 0.0,
-                 wins < n ? bm::ibeta_inv(wins + 1.0, n - wins, 0.975) : 1.0};
   const std::size_t decided = result.wins_a + result.wins_b;
   if (decided == 0) {
     result.p_value = 1.0;

@@ -83,10 +83,16 @@ json methods_json(const ReportOptions& options) {
       {"versions", {{"boost", boost_version()}, {"eigen", eigen_version()}}},
       {"ranks", "mid-ranks among the pictures of a page"},
       {"ranks_of",
-       "means, weighted means and order: of the digits as typed where all pages have them (the "
+       "means, weighted means and order: of the digits, from 1 for the best, where all pages have "
+       "them (the "
        "2007 "
        "study averaged digits), otherwise of mid-ranks; tests on ranks: of mid-ranks"},
       {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
+      {"arms",
+       "where people were assigned to several ways of giving ranks: read_right counts those "
+       "without "
+       "the flag inverted, judged against the means of all arms; ci95 by Clopper and Pearson; p of "
+       "each two arms by Fisher's exact test, two-sided, and after Holm"},
       {"repeats", "measure reliability only"},
       {"weights",
        "difficulty 1 to 5; weighted mean sum(w r) / sum(w), standard error HC1, effective n by "

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "study/statistics/analysis.h"
+#include "study/statistics/arms.h"
 #include "study/statistics/histograms.h"
 #include "study/statistics/jod.h"
 #include "study/statistics/provenance.h"
@@ -194,6 +195,8 @@ json survey_report(const SurveyData& data, const ReportOptions& options) {
                  {"methods", statistics::methods_json(options)},
                  {"data_sha256", statistics::data_digest(data)},
                  {"notes", statistics::notes_json(data)}};
+  if (auto arms = statistics::arms_json(data, flags); !arms.is_null())
+    report["arms"] = std::move(arms);
   report["warnings"] = statistics::warnings_json(report);
   if (!options.study_id.empty()) report["study"] = options.study_id;
   if (!options.study_hash.empty()) report["study_hash"] = options.study_hash;

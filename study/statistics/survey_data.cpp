@@ -111,12 +111,13 @@ void Gatherer::add(const ResponseRow& row) {
   if (!row.included) taken_out.insert(row.participant);
   Row& kept = rows.emplace_back();
   kept.participant = participants.number(row.participant);
+  if (!row.arm.empty()) arms.try_emplace(kept.participant, row.arm);
   kept.scene = scenes.number(row.scene);
   kept.technique = techniques.number(row.technique);
   kept.page_index = row.page_index;
   kept.repeat = row.repeat;
   kept.rank = row.rank;
-  if (row.digit) kept.digit = *row.digit;
+  if (row.digit) kept.digit = digit_from_best(*row.digit, row.best_digit.value_or(1));
   if (row.slot) kept.slot = *row.slot;
   if (row.weight)
     kept.weight = *row.weight;
@@ -147,6 +148,15 @@ PageAnswer Gatherer::page_of(const Row* first, const Row* last, std::size_t tech
     if (!page.active_ms && !is_missing(row->active_ms)) page.active_ms = row->active_ms;
   }
   return page;
+}
+
+std::vector<std::string> Gatherer::arms_of(const std::vector<std::string>& names) const {
+  std::vector<std::string> list;
+  for (const auto& name : names) {
+    const auto arm = arms.find(participants.numbers.at(name));
+    list.push_back(arm == arms.end() ? "" : arm->second);
+  }
+  return list;
 }
 
 SurveyData Gatherer::finish() {
@@ -181,7 +191,9 @@ SurveyData Gatherer::finish() {
     return std::tuple_cat(page_key(a), std::make_tuple(a.technique)) <
            std::tuple_cat(page_key(b), std::make_tuple(b.technique));
   });
-  SurveyData data{names, scene_names, technique_names, {}, {taken_out.begin(), taken_out.end()}};
+  SurveyData data{names,       arms_of(names),
+                  scene_names, technique_names,
+                  {},          {taken_out.begin(), taken_out.end()}};
   for (auto first = rows.begin(); first != rows.end();) {
     const auto last = std::find_if(
         first, rows.end(), [&](const Row& row) { return page_key(row) != page_key(*first); });

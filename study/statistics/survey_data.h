@@ -21,7 +21,7 @@ struct PageAnswer {
   int repeat = 0;
   std::size_t pictures = 0;
   std::vector<double> doubled_ranks;  ///< twice the mid-rank among the page's pictures
-  std::vector<double> digits;         ///< as typed
+  std::vector<double> digits;         ///< as typed, counted from 1 for the most realistic
   std::vector<double> slots;
   std::optional<double> weight;  ///< of the page; the difficulty unless given
   std::optional<double> active_ms;
@@ -30,6 +30,7 @@ struct PageAnswer {
 /// Rows gathered into pages. Names are sorted, so that the order of rows does not matter.
 struct SurveyData {
   std::vector<std::string> participants;
+  std::vector<std::string> arms;  ///< per participant; empty where the study has one only
   std::vector<std::string> scenes;
   std::vector<std::string> techniques;
   std::vector<PageAnswer> pages;       ///< by participant, scene, page_index, repeat
@@ -65,9 +66,11 @@ class Gatherer {
     double weight = missing;
     double active_ms = missing;
   };
+  std::vector<std::string> arms_of(const std::vector<std::string>& names) const;
   static PageAnswer page_of(const Row* first, const Row* last, std::size_t techniques);
 
   Names participants;
+  std::map<std::uint32_t, std::string> arms;  ///< by participant, where there are several
   Names scenes;
   Names techniques;
   std::set<std::string> taken_out;

@@ -42,7 +42,7 @@ test("the laboratory asks for its token, and says when it is the wrong one", asy
 });
 
 test("a study is written from a template, its faults are told all at once, and it is stored", async () => {
-  await page.getByLabel("From a template").selectOption("template");
+  await page.getByLabel("From a template").selectOption({ label: "Shadows (template)" });
   await page.getByRole("button", { name: "Write a copy" }).click();
   const text = page.getByLabel("Study file (JSON)");
   const study = JSON.parse(await text.inputValue());

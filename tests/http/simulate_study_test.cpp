@@ -2,19 +2,23 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <set>
 
+#include "study/csv.h"
 #include "study/responses.h"
 #include "tests/http/a_study.h"
+#include "tests/http/zip_files.h"
 
 namespace penumbra::server::http {
 namespace {
 
 class SimulatedPeople : public AStudy {
  protected:
-  /// Exit state of `penumbra simulate-study` for the study that ships.
-  int simulate(const std::string& arguments) {
+  /// Exit state of `penumbra simulate-study` for a document, or the study that ships.
+  int simulate(const std::string& arguments, const json& document = nullptr) {
     const auto file = (folder.path / "study.json").string();
-    std::ofstream(file) << study()["document"].dump();
+    std::ofstream(file) << (document.is_null() ? study()["document"] : document).dump();
     const auto url = "http://127.0.0.1:" + std::to_string(server->port());
     const auto command = std::string(PENUMBRA_BINARY_DIR) + "/penumbra simulate-study " + file +
                          " --url '" + url + "' " + arguments + " > /dev/null 2>&1";
@@ -52,6 +56,63 @@ TEST_F(SimulatedPeople, TakePartAsTheyAreToldToAndAreFoundOut) {
     const auto& entry = document["techniques"][8 - i];
     EXPECT_EQ(overall[i]["technique"], entry["technique"]) << i;
   }
+}
+
+/// A line of a CSV by the names of its columns, for cells without quotes.
+std::map<std::string, std::string> line_of(const study::CsvRecord& header,
+                                           const study::CsvRecord& record) {
+  std::map<std::string, std::string> cells;
+  for (std::size_t i = 0; i < header.cells.size(); ++i) cells[header.cells[i]] = record.cells.at(i);
+  return cells;
+}
+
+TEST_F(SimulatedPeople, AreSpreadOverTheArmsOfATemplateAndExportedWithThem) {
+  auto document = json::parse(researcher->Get("/api/v1/templates/digits-or-shelves")->body);
+  document["pages"] = {{{"scene", "boxes"}}, {{"scene", "car"}}, {{"scene", "island"}}};
+  ASSERT_EQ(simulate("--participants 24 --inverted 2 --step 2 --seed 9" + token(), document), 0);
+  const std::string arms = "/api/v1/studies/digits-or-shelves";
+  for (const auto& arm : body_of(researcher->Get(arms), 200, "Study")["arms"]) {
+    EXPECT_EQ(arm["entered"], 8) << arm;
+    EXPECT_EQ(arm["answered_all"], 8) << arm;
+  }
+  const auto results = body_of(researcher->Get(arms + "/results.json"), 200, "Results");
+  ASSERT_EQ(results["arms"]["list"].size(), 3u);
+  int inverted = 0;
+  for (const auto& arm : results["arms"]["list"]) inverted += arm["inverted"].get<int>();
+  EXPECT_EQ(inverted, 2) << "digits of either direction are read the right way round";
+  // Preferences rise with the document's order in every arm alike.
+  for (const auto& arm : results["arms"]["list"])
+    EXPECT_EQ(arm["techniques"].front()["technique"], "reference") << arm;
+  const auto file = folder.path / "export.zip";
+  std::ofstream(file, std::ios::binary) << researcher->Get(arms + "/export.zip")->body;
+  const auto files = unpacked(file);
+  std::map<std::string, std::string> arm_of;
+  std::map<std::string, int> people;
+  const auto table = study::parse_csv(files.at("participants.csv"));
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    const auto person = line_of(table[0], table[i]);
+    arm_of[person.at("participant")] = person.at("arm");
+    ++people[person.at("arm")];
+  }
+  EXPECT_EQ(people,
+            (std::map<std::string, int>{{"nine-is-best", 8}, {"one-is-best", 8}, {"shelves", 8}}));
+  // On a page of digits the best is what has the arm's best digit's end.
+  const auto rows = study::parse_csv(files.at("responses.csv"));
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto row = line_of(rows[0], rows[i]);
+    ASSERT_EQ(row.at("arm"), arm_of.at(row.at("participant")));
+    EXPECT_EQ(row.at("digit_as_typed").empty(), row.at("arm") == "shelves");
+    EXPECT_EQ(row.at("best_digit"), row.at("arm") == "shelves"        ? ""
+                                    : row.at("arm") == "nine-is-best" ? "9"
+                                                                      : "1");
+  }
+  EXPECT_NE(files.at("report.html").find("Ways of giving ranks"), std::string::npos);
+  std::set<std::string> explained;
+  for (const auto& record : study::parse_csv(files.at("codebook.csv")))
+    explained.insert(record.cells[0] + " " + record.cells[1]);
+  for (const auto* column :
+       {"responses.csv arm", "responses.csv best_digit", "participants.csv arm"})
+    EXPECT_TRUE(explained.contains(column)) << column;
 }
 
 TEST_F(SimulatedPeople, NeedTheTokenAndAServer) {

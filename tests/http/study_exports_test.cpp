@@ -1,4 +1,3 @@
-#include <zip.h>
 
 #include <fstream>
 #include <map>
@@ -9,6 +8,7 @@
 #include "study/csv.h"
 #include "study/responses.h"
 #include "tests/http/a_study.h"
+#include "tests/http/zip_files.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -87,25 +87,6 @@ TEST_F(AStudy, HoldsWhatWasMeasuredAgainstWhatWasSeen) {
   const int submitted = renders->submitted;
   measured();
   EXPECT_EQ(renders->submitted, submitted);
-}
-
-/// Files of an archive by name.
-std::map<std::string, std::string> unpacked(const std::filesystem::path& file) {
-  std::map<std::string, std::string> files;
-  int failure = 0;
-  zip_t* zip = zip_open(file.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &failure);
-  if (zip == nullptr) return files;
-  for (zip_int64_t i = 0; i < zip_get_num_entries(zip, 0); ++i) {
-    zip_stat_t stat;
-    zip_stat_index(zip, static_cast<zip_uint64_t>(i), 0, &stat);
-    std::string bytes(stat.size, '\0');
-    zip_file_t* entry = zip_fopen_index(zip, static_cast<zip_uint64_t>(i), 0);
-    EXPECT_EQ(zip_fread(entry, bytes.data(), bytes.size()), static_cast<zip_int64_t>(stat.size));
-    EXPECT_EQ(zip_fclose(entry), 0) << stat.name;  // its checksum is right
-    files[stat.name] = std::move(bytes);
-  }
-  zip_discard(zip);
-  return files;
 }
 
 TEST_F(AStudy, ExportsEverythingInOneArchive) {

@@ -26,11 +26,11 @@ std::string fault_of(const std::function<void(json&)>& change, bool numeric = fa
   const Study study = parse_study(document);
   json body = good_answer();
   change(body);
-  return field_at_fault([&] { parse_answer(body, study, 3); });
+  return field_at_fault([&] { parse_answer(body, study.arms.front(), 3); });
 }
 
 TEST(Answer, ShelvesAndDifficultyAreRead) {
-  const Answer answer = parse_answer(good_answer(), parse_study(thesis_document()), 3);
+  const Answer answer = parse_answer(good_answer(), Arm{}, 3);
   EXPECT_THAT(answer.shelves, ElementsAre(0, 2, 0));
   EXPECT_EQ(answer.difficulty, 4);
   EXPECT_EQ(answer.answer_id, uuid);
@@ -77,7 +77,7 @@ TEST(Answer, ANumericStudyTakesDigitsFromOneToNine) {
 TEST(Answer, ThePracticePageNeedsNoDifficulty) {
   json body = good_answer();
   body.erase("difficulty");
-  EXPECT_EQ(parse_answer(body, parse_study(thesis_document()), 3, true).difficulty, 0);
+  EXPECT_EQ(parse_answer(body, Arm{}, 3, true).difficulty, 0);
 }
 
 TEST(Answer, TheSameAnswerIsRecognisedWhateverItsNotation) {

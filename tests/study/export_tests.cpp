@@ -160,7 +160,7 @@ TEST(Responses, WhatThePageNotedIsExported) {
   const PlannedPage planned{PageKind::ranking, 0, {0, 1, 2, 3, 4, 5, 6, 7, 8}};
   for (int i = 0; i < 9; ++i) body["shelves"][std::to_string(i)] = i;
   auto rows =
-      response_rows(study, "h", "P1", planned, 0, parse_answer(body, study, 9), "2026-01-01");
+      response_rows(study, "h", "P1", {}, planned, 0, parse_answer(body, {}, 9), "2026-01-01");
   const auto cells = cells_of(write_responses(rows));
   std::map<std::string, std::string> value;
   for (std::size_t i = 0; i < cells[0].size(); ++i) value[cells[0][i]] = cells[1][i];

@@ -158,9 +158,11 @@ TEST(Responses, AnAnswerBecomesOneRowPerPictureWithMidRanks) {
   const PlannedPage planned{PageKind::repeat, 1, {last, 4, 3, 2, 1, 0}};
   Answer answer;
   answer.shelves = {0, 0, 1, 2, 2, 2};
+  answer.order = answer.shelves;
   answer.difficulty = 2;
   answer.observations.swaps = 1;
-  const auto rows = response_rows(study, "hash", "P1", planned, 4, answer, "2026-01-01T00:00:00Z");
+  const auto rows =
+      response_rows(study, "hash", "P1", {}, planned, 4, answer, "2026-01-01T00:00:00Z");
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[0].technique, "reference");
   EXPECT_EQ(rows[5].technique, "shadow-map");

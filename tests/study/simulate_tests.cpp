@@ -129,7 +129,7 @@ TEST(Simulation, AnswersAreThoseOfThePersonAndThePageAlone) {
   for (std::size_t page = 0; page < plan.pages.size(); ++page) {
     const json answer = simulate_answer(study, person, plan, page, preferences);
     EXPECT_EQ(answer, simulate_answer(study, person, plan, page, preferences));
-    EXPECT_NO_THROW(parse_answer(answer, study, plan.pages[page].slots.size()));
+    EXPECT_NO_THROW(parse_answer(answer, arm_of(study, plan), plan.pages[page].slots.size()));
     ids.insert(answer["answer_id"].get<std::string>());
   }
   EXPECT_EQ(ids.size(), plan.pages.size());

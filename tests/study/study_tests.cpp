@@ -30,7 +30,7 @@ TEST(Study, TheThesisStudyHasItsSixScenesAndTheReferenceAmongThePictures) {
   }
   EXPECT_THAT(scenes, ElementsAre("car", "boxes", "disco-box", "island", "warehouse-inside",
                                   "warehouse-outside"));
-  EXPECT_EQ(study.widget, Widget::shelves);
+  EXPECT_EQ(study.arms.front().widget, Widget::shelves);
   EXPECT_EQ(study.difficulty.labels.size(), 5u);
 }
 

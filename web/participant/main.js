@@ -148,7 +148,8 @@ class Course {
 
   show_instructions() {
     load_ahead(this.person.pages[0]);
-    this.show(instruction_view({ texts: this.texts, strings: this.strings, widget: this.person.entry.widget, code: this.person.entry.withdrawal_code,
+    this.show(instruction_view({ texts: this.texts, strings: this.strings, widget: this.person.entry.widget, best_digit: this.person.entry.best_digit,
+      code: this.person.entry.withdrawal_code,
       count: (seen) => this.keep_details({ patches_seen: seen ?? undefined }),
       begin: async () => {
         const { patches_seen } = await this.details();
@@ -172,6 +173,7 @@ class Course {
     const pictures = await this.pictures_of(page, number, kept);
     if (this.at !== number) return;  // the person went elsewhere meanwhile
     const view = new RankingPage({ page, pictures, kept, strings, texts: this.texts, widget: person.entry.widget,
+      best_digit: person.entry.best_digit,
       announce: (text, visible) => this.announce(text, visible),
       save: (draft) => person.save_draft(number, draft),
       submit: async (answer) => {
@@ -190,7 +192,7 @@ class Course {
   /// What was meant on the practice page; the promise ends when the person goes on.
   show_practised(page, pictures, answer) {
     return new Promise((go_on) => {
-      this.show(practice_view({ page, pictures, answer, strings: this.strings, labels: this.texts.labels, go_on,
+      this.show(practice_view({ page, pictures, answer, best_digit: this.person.entry.best_digit, strings: this.strings, labels: this.texts.labels, go_on,
         again: () => this.attempt(() => this.show_page(this.at)) }));
     });
   }

@@ -3,8 +3,17 @@
 
 import { h, icon } from "/assets/shared/dom.js";
 
+/// The labels of the digits 1 and 9.
+export const digit_ends = ({ most, least }, best) => (best === 9 ? [least, most] : [most, least]);
+
+/// Digits by slot, counted from 1 for the end that the study names first.
+export const from_best = (digits, best) =>
+  Object.fromEntries(Object.entries(digits).map(([slot, digit]) => [slot, best === 9 ? 10 - digit : digit]));
+
 export class DigitBoard {
-  constructor({ pictures, digits, labels, strings, on_change, on_enlarge }) {
+  /// `best` is the digit, 1 or 9, of the end that the study names first.
+  constructor({ pictures, digits, best, labels, strings, on_change, on_enlarge }) {
+    this.best = best;
     this.fields = new Map();
     const items = [...pictures.values()].map((picture) => {
       const field = h("select", { "aria-label": strings.digit(picture.name), on: { change: on_change } },
@@ -19,7 +28,7 @@ export class DigitBoard {
         h("div", { class: "caption" }, h("span", { "aria-hidden": "true" }, picture.letter), field, icon("enlarge")));
     });
     this.element = h("section", { class: "digits" },
-      h("p", { class: "scale" }, strings.digits_scale(labels.most, labels.least)), h("ul", { class: "pictures" }, items));
+      h("p", { class: "scale" }, strings.digits_scale(...digit_ends(labels, best))), h("ul", { class: "pictures" }, items));
   }
 
   get missing() {
@@ -45,6 +54,7 @@ export class DigitBoard {
     const values = digits.map(([, digit]) => digit);
     const at = (value) => digits.filter(([, digit]) => digit === value).map(([slot]) => slot);
     const [low, high] = [Math.min(...values), Math.max(...values)];
-    return low === high ? null : { most: at(low), least: at(high) };
+    if (low === high) return null;
+    return this.best === 9 ? { most: at(high), least: at(low) } : { most: at(low), least: at(high) };
   }
 }

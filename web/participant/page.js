@@ -13,14 +13,14 @@ const reference_slot = "reference";  // in the viewer, beside the slots of the p
 export class RankingPage {
   /// `page` as the server describes it, `pictures` loaded; `kept` is what a reload or an earlier
   /// visit left: {shelves|digits, all_same, difficulty, observations}.
-  constructor({ page, pictures, texts, strings, widget, kept, announce, save, submit, back }) {
+  constructor({ page, pictures, texts, strings, widget, best_digit, kept, announce, save, submit, back }) {
     Object.assign(this, { page, pictures, texts, strings, announce, save, submit, back });
     this.practice = page.kind === "practice";
     this.observations = new Observations(kept.observations);
     const shared = { pictures, strings, labels: texts.labels,
       on_change: () => this.changed(), on_enlarge: (slot) => this.enlarge(slot) };
     if (widget === "numeric") {
-      this.digits = new DigitBoard({ ...shared, digits: kept.digits ?? {} });
+      this.digits = new DigitBoard({ ...shared, digits: kept.digits ?? {}, best: best_digit });
     } else {
       this.arrangement = new Arrangement([...pictures.keys()], kept.shelves, kept.all_same ?? false);
       this.board = new Board({ ...shared, arrangement: this.arrangement, announce });

@@ -1,6 +1,7 @@
 // After the practice page: the order that is meant beside the one given. Nothing of it is counted.
 
 import { h } from "/assets/shared/dom.js";
+import { from_best } from "./numeric.js";
 
 /// Whether no two pictures stand the wrong way round, and the best stands before the worst. `places`
 /// has a number per slot, the lowest is most realistic.
@@ -10,8 +11,8 @@ export function is_right(right_order, places) {
 }
 
 /// `again()` returns to the practice page, `go_on()` leaves it.
-export function practice_view({ page, pictures, answer, strings, labels, again, go_on }) {
-  const right = is_right(page.right_order, answer.shelves ?? answer.digits);
+export function practice_view({ page, pictures, answer, best_digit, strings, labels, again, go_on }) {
+  const right = is_right(page.right_order, answer.shelves ?? from_best(answer.digits, best_digit));
   return h("article", { class: "card practised" },
     h("h1", { tabindex: "-1" }, right ? strings.practice_right : strings.practice_wrong),
     h("p", {}, strings.practice_meant(labels.most, labels.least)),

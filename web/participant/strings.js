@@ -42,9 +42,9 @@ const en = {
   how_shelves: (most, least) => ["Order", `Put every picture on a shelf, from “${most}” at the top to ` +
     `“${least}” at the bottom. Pictures that you hold to be equal in this go on the same shelf. ` +
     "Shelves may stay empty."],
-  how_digits: (most, least) => ["Rank", `Give every picture a digit, from 1 for “${most}” to 9 for “${least}”. ` +
+  how_digits: (one, nine) => ["Rank", `Give every picture a digit, from 1 for “${one}” to 9 for “${nine}”. ` +
     "Pictures that you hold to be equal in this get the same digit. Not every digit has to be used."],
-  digits_scale: (most, least) => `1 is “${most}”, 9 is “${least}”. Equal digits are allowed.`,
+  digits_scale: (one, nine) => `1 is “${one}”, 9 is “${nine}”. Equal digits are allowed.`,
   how_ways: "Drag a picture to its shelf, or choose it and then choose the shelf. On a keyboard, N " +
     "goes to the next picture to place and, when none is left, to the question below; the up and down arrows move the picture in focus, " +
     "Home, M and End move it to the top, the middle and the bottom, the left and right arrows go to its neighbours, " +
@@ -189,10 +189,10 @@ const nl = {
   how_shelves: (most, least) => ["Ordenen", `Zet elk plaatje op een plank, van “${most}” bovenaan tot ` +
     `“${least}” onderaan. Plaatjes die u hierin gelijk vindt, gaan op dezelfde plank. ` +
     "Planken mogen leeg blijven."],
-  how_digits: (most, least) => ["Rangschikken", `Geef elk plaatje een cijfer, van 1 voor “${most}” tot 9 voor ` +
-    `“${least}”. Plaatjes die u hierin gelijk vindt, krijgen hetzelfde cijfer. ` +
+  how_digits: (one, nine) => ["Rangschikken", `Geef elk plaatje een cijfer, van 1 voor “${one}” tot 9 voor ` +
+    `“${nine}”. Plaatjes die u hierin gelijk vindt, krijgen hetzelfde cijfer. ` +
     "U hoeft niet elk cijfer te gebruiken."],
-  digits_scale: (most, least) => `1 is “${most}”, 9 is “${least}”. Gelijke cijfers mogen.`,
+  digits_scale: (one, nine) => `1 is “${one}”, 9 is “${nine}”. Gelijke cijfers mogen.`,
   how_ways: "Sleep een plaatje naar zijn plank, of kies eerst het plaatje en dan de plank. Met het toetsenbord " +
     "gaat N naar het volgende te plaatsen plaatje en, als er geen meer is, naar de vraag eronder; de pijlen omhoog en omlaag verplaatsen het plaatje, " +
     "Home, M en End zetten het bovenaan, in het midden en onderaan, de pijlen links en rechts gaan naar de buren, " +

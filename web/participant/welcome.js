@@ -3,6 +3,7 @@
 import { h, paragraphs } from "/assets/shared/dom.js";
 import { languages, reason_of, strings_of } from "./strings.js";
 import { withdrawal_form } from "./end.js";
+import { digit_ends } from "./numeric.js";
 
 function language_choice(welcome, language, strings, choose) {
   if (welcome.languages.length < 2) return null;
@@ -57,10 +58,11 @@ function patches(strings, count) {
 }
 
 /// How to do it. `begin()` shows the first page, `count(seen)` keeps the number of patches told apart.
-export function instruction_view({ texts, strings, widget, code, begin, count }) {
+export function instruction_view({ texts, strings, widget, best_digit, code, begin, count }) {
   const numeric = widget === "numeric";
   const { most, least } = texts.labels;
-  const steps = [strings.how_look, (numeric ? strings.how_digits : strings.how_shelves)(most, least), strings.how_closer];
+  const rank = numeric ? strings.how_digits(...digit_ends(texts.labels, best_digit)) : strings.how_shelves(most, least);
+  const steps = [strings.how_look, rank, strings.how_closer];
   return h("article", { class: "card" },
     h("h1", { tabindex: "-1" }, strings.how_heading),
     h("ol", { class: "how" }, steps.map(([name, text]) => h("li", {}, h("h2", {}, name), h("p", {}, text)))),

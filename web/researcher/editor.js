@@ -83,16 +83,29 @@ function own_pictures(text) {
 export async function editor_view(from, version, copy) {
   const document = await get(`/api/v1/studies/${encodeURIComponent(from)}/study.json${version ? `?version=${version}` : ""}`);
   if (copy) document.id = `${document.id}-copy`.slice(0, 64);
+  return form({ document, made: copy, heading: copy ? `A new study, from ${from}` : `Edit ${from}`,
+    back: copy ? "#studies" : `#study/${encodeURIComponent(from)}` });
+}
+
+/// A new study from a template of the laboratory.
+export async function template_view(template) {
+  const document = await get(`/api/v1/templates/${encodeURIComponent(template)}`);
+  return form({ document, made: true, heading: `A new study, from ${template}`, back: "#studies" });
+}
+
+/// `made` where it becomes a study of its own; `back` is where cancelling leads.
+function form({ document, made, heading, back }) {
   const outcome = h("div", { class: "problems", role: "alert" });
   const text = h("textarea", { id: "study-text", class: "document", rows: "30", spellcheck: "false", autocomplete: "off" });
   text.value = JSON.stringify(document, null, 2);
   return h("div", {}, h("p", {}, h("a", { href: "#studies" }, "All studies")),
-    h("h1", { tabindex: "-1" }, copy ? `A new study, from ${from}` : `Edit ${from}`),
+    h("h1", { tabindex: "-1" }, heading),
     h("section", { class: "card" },
-      h("p", {}, copy ? "Give it an id of its own; it becomes part of its address." : "Stored as a draft. What is open stays open until you publish the draft."),
+      document.about ? h("p", {}, document.about) : null,
+      h("p", {}, made ? "Give it an id of its own; it becomes part of its address." : "Stored as a draft. What is open stays open until you publish the draft."),
       h("label", { for: "study-text" }, "Study file (JSON)"), text, outcome,
       h("div", { class: "actions" },
         h("button", { type: "button", class: "primary", on: { click: () => store(text.value, outcome) } }, "Check and store as draft"),
-        h("a", { class: "quiet", href: copy ? "#studies" : `#study/${encodeURIComponent(from)}` }, "Cancel"))),
+        h("a", { class: "quiet", href: back }, "Cancel"))),
     own_pictures(text));
 }

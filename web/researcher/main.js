@@ -1,10 +1,10 @@
-// The researcher's pages: #studies, #study/ID/VERSION, #people/ID/VERSION, #edit/ID/VERSION, #copy/ID/VERSION
+// The researcher's pages: #studies, #study/ID/VERSION, #people/ID/VERSION, #edit/ID/VERSION, #copy/ID/VERSION, #new/TEMPLATE,
 // #bench, #compare and #experiments.
 
 import { h, show } from "/assets/shared/dom.js";
 import { bench_view } from "./bench.js";
 import { compare_view } from "./compare.js";
-import { editor_view } from "./editor.js";
+import { editor_view, template_view } from "./editor.js";
 import { experiments_view } from "./experiments.js";
 import { people_view } from "./people.js";
 import { study_view } from "./study.js";
@@ -36,6 +36,7 @@ async function route() {
       people: () => people_view(id, version),
       edit: () => editor_view(id, version, false),
       copy: () => editor_view(id, version, true),
+      new: () => template_view(id),
     };
     const view = await (views[place] ?? studies_view)();
     if (!signal.aborted) show(main, view);

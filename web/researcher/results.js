@@ -84,6 +84,24 @@ function part_section(name, part, label, alpha) {
     test_line(part), part.reason ? h("p", { class: "small" }, part.reason) : null);
 }
 
+/// What each way of giving ranks did to people, where there are several.
+function arms_section(arms) {
+  if (!arms) return null;
+  const share = (value) => `${fixed(100 * value, 0)}%`;
+  const table = (caption, columns, rows) => h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
+    h("table", { class: "plain" }, h("caption", {}, caption),
+      h("thead", {}, h("tr", {}, columns.map((name) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, rows.map(([name, ...cells]) => h("tr", {}, h("th", { scope: "row" }, name),
+        cells.map((cell) => h("td", { class: "number" }, cell)))))));
+  return h("section", { class: "card result" }, h("h3", {}, "Ways of giving ranks"),
+    h("p", { class: "small" }, "Who is not flagged as inverted read the scale right. Agreement is a person's rank correlation with everybody else, all arms taken together."),
+    table("Arms", ["Arm", "People", "Inverted", "Read right", "95% interval", "Agreement"], arms.list.map((arm) =>
+      [arm.arm, String(arm.participants), String(arm.inverted), share(arm.read_right),
+        arm.ci95.map(share).join(" to "), fixed(arm.mean_rho, 2)])),
+    table("Differences (Fisher's exact test)", ["Arms", "Difference", "p", "p (Holm)"], arms.comparisons.map((pair) =>
+      [`${pair.a} − ${pair.b}`, `${fixed(100 * pair.difference, 0)} points`, probability(pair.p_value), probability(pair.p_holm)])));
+}
+
 function flags_table(flags) {
   if (!flags.length) return null;
   return h("section", { class: "card" }, h("h3", {}, "Flags"),
@@ -131,6 +149,7 @@ export class Results {
     this.body.replaceChildren(...[
       part.overall?.techniques?.length ? part_section("All scenes", part.overall, label, alpha) : null,
       part.scenes.filter((scene) => scene.techniques.length).map((scene) => part_section(scene.scene, scene, label, alpha)),
+      arms_section(results.arms),
       flags_table(results.flags ?? []),
     ].flat().filter(Boolean));
   }

@@ -64,6 +64,15 @@ function cells_table({ id, cells }) {
           answers_by_slot.map((count) => h("td", { class: "number" }, String(count)))))))));
 }
 
+/// People by way of giving ranks, where there are several.
+function arms_table(study) {
+  if (study.arms.length === 0) return null;
+  return h("table", { class: "plain" }, h("caption", {}, "People by arm"),
+    h("thead", {}, h("tr", {}, ["Arm", "Entered", "Answered all pages"].map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, study.arms.map(({ arm, entered, answered_all }) => h("tr", {}, h("th", { scope: "row" }, arm),
+      [entered, answered_all].map((count) => h("td", { class: "number" }, String(count)))))));
+}
+
 function pages_table(study) {
   if (study.scenes.length === 0) return null;
   return [h("table", { class: "plain" }, h("caption", {}, "Answers so far"),
@@ -187,7 +196,7 @@ class StudyView {
       progress_of(study),
       study.versions.some((version) => version.status === "open") ? participant_link(study) : null,
       versions_table(study, study.version, (version) => this.version_actions(version)),
-      study.hash ? [h("h2", {}, `Version ${study.version}`), counts(study), pages_table(study)] : null,
+      study.hash ? [h("h2", {}, `Version ${study.version}`), counts(study), arms_table(study), pages_table(study)] : null,
       study.hash ? h("div", { class: "actions" },
         h("a", { class: "quiet", href: this.version_path("/report.html"), target: "_blank", rel: "noopener" }, "Report"),
         exported("export.zip", "Everything (zip)"), exported("responses.csv", "Responses (CSV)"),
