@@ -48,12 +48,32 @@ test("a study is written from a template, its faults are told all at once, and i
   const study = JSON.parse(await text.inputValue());
   assert.equal(study.id, "template-copy");
   study.id = "made-here";
-  await text.fill(JSON.stringify({ ...study, techniques: ["none", "shadow-mop"], pages: [{ scene: "half-plan" }, { scene: "boxes" }] }));
+  const wrong = JSON.stringify({ ...study, techniques: ["none", "shadow-mop"], pages: [{ scene: "half-plan" }, { scene: "boxes" }] }, null, 2);
+  await text.fill(wrong);
   await page.getByRole("button", { name: "Check and store as draft" }).click();
   await page.getByText("things are wrong with this study").waitFor();
   const faults = await page.locator(".problems li code").allInnerTexts();
   assert.deepEqual(faults.sort(), ["pages[0].scene", "techniques[1]"]);
+  // Each fault leads to its line, where what is meant is selected and in view.
+  assert.equal(await text.getAttribute("aria-invalid"), "true");
+  for (const [field, value] of [["techniques[1]", '"shadow-mop"'], ["pages[0].scene", '"half-plan"']]) {
+    const line = wrong.slice(0, wrong.indexOf(value)).split("\n").length;
+    await page.locator(".problems li", { hasText: field }).getByRole("button", { name: `line ${line}`, exact: true }).click();
+    const shown = await text.evaluate((area) => ({ focused: document.activeElement === area,
+      selected: area.value.slice(area.selectionStart, area.selectionEnd),
+      at: (area.value.slice(0, area.selectionStart).split("\n").length - 0.5) * (area.scrollHeight / area.value.split("\n").length) - area.scrollTop,
+      height: area.clientHeight }));
+    assert.ok(shown.focused);
+    assert.equal(shown.selected, value);
+    assert.ok(shown.at > 0 && shown.at < shown.height, JSON.stringify(shown));
+  }
   assert.deepEqual(await violations(page), []);
+  // What is no JSON is told with its line, and loses nothing.
+  const broken = JSON.stringify(study, null, 2).replace('"languages"', "languages");
+  await text.fill(broken);
+  await page.getByRole("button", { name: "Check and store as draft" }).click();
+  await page.locator(".problems").getByRole("button", { name: `line ${broken.split("\n").findIndex((line) => /^\s*languages/.test(line)) + 1}`, exact: true }).waitFor();
+  assert.equal(await text.inputValue(), broken);
   await text.fill(JSON.stringify(study));
   await page.getByRole("button", { name: "Check and store as draft" }).click();
   await page.getByRole("heading", { name: "Shadows" }).waitFor();

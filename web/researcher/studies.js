@@ -2,7 +2,7 @@
 
 import { h } from "/assets/shared/dom.js";
 import { get } from "/assets/shared/http.js";
-import { store } from "./editor.js";
+import { store_file } from "./editor.js";
 
 const statuses = { draft: "Draft", publishing: "Rendering its pictures", open: "Open", closed: "Closed" };
 
@@ -20,7 +20,7 @@ function upload(studies, templates) {
   const file = h("input", { type: "file", id: "study-file", accept: ".json,application/json,.zip,application/zip" });
   file.addEventListener("change", async () => {
     const [chosen] = file.files;
-    await store(chosen.name.toLowerCase().endsWith(".zip") ? chosen : await chosen.text(), outcome);
+    await store_file(chosen, outcome);
     file.value = "";
   });
   const template = template_choice(studies, templates);
