@@ -71,7 +71,8 @@ TEST_F(SimulatedPeople, AreSpreadOverTheArmsOfATemplateAndExportedWithThem) {
   document["pages"] = {{{"scene", "boxes"}}, {{"scene", "car"}}, {{"scene", "island"}}};
   ASSERT_EQ(simulate("--participants 24 --inverted 2 --step 2 --seed 9" + token(), document), 0);
   const std::string arms = "/api/v1/studies/digits-or-shelves";
-  for (const auto& arm : body_of(researcher->Get(arms), 200, "Study")["arms"]) {
+  const auto stored = body_of(researcher->Get(arms), 200, "Study");
+  for (const auto& arm : stored["arms"]) {
     EXPECT_EQ(arm["entered"], 8) << arm;
     EXPECT_EQ(arm["answered_all"], 8) << arm;
   }

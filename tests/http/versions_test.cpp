@@ -60,7 +60,8 @@ TEST_F(Versions, ADraftStandsBesideTheOpenVersionAndHidesItFromNoOne) {
   ASSERT_EQ(shown["versions"].size(), 2u);
   EXPECT_EQ(shown["versions"][0]["status"], "draft");
   EXPECT_EQ(shown["versions"][1]["participants"]["entered"], 1);
-  for (const auto& entry : body_of(researcher->Get("/api/v1/studies"), 200, "StudyList")["studies"])
+  const auto list = body_of(researcher->Get("/api/v1/studies"), 200, "StudyList");
+  for (const auto& entry : list["studies"])
     if (entry["id"] == "small") {
       EXPECT_EQ(entry["status"], "open");
     }
