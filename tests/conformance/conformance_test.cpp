@@ -13,6 +13,7 @@
 #include "techniques/presets.h"
 #include "techniques/registry.h"
 #include "tests/conformance/scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::techniques {
 TechniqueDescription describe_template();
@@ -154,18 +155,18 @@ TEST_P(Conformance, the_same_request_gives_the_same_bytes_whatever_was_drawn_bef
   const RenderRequest request = request_for(technique(), box_on_ground());
   const RenderResult first = renderer().render(request);
   const RenderResult again = renderer().render(request);
-  EXPECT_EQ(first.picture.pixels, again.picture.pixels);
-  EXPECT_EQ(first.visibility.pixels, again.visibility.pixels);
+  EXPECT_TRUE(tests::same(first.picture, again.picture));
+  EXPECT_TRUE(tests::same(first.visibility, again.visibility));
 
   for (const TechniqueDescription& other : subjects())
     if (other.id != technique().id) {
       renderer().render(request_for(other, open_ground(), 32));
       break;
     }
-  EXPECT_EQ(renderer().render(request).picture.pixels, first.picture.pixels);
+  EXPECT_TRUE(tests::same(renderer().render(request).picture, first.picture));
 
   Renderer alone({.device = "", .validation = false});
-  EXPECT_EQ(alone.render(request).picture.pixels, first.picture.pixels);
+  EXPECT_TRUE(tests::same(alone.render(request).picture, first.picture));
 }
 
 TEST_P(Conformance, two_cameras_agree_on_one_light) {
@@ -208,7 +209,7 @@ TEST_P(Conformance, is_nearer_the_reference_than_no_shadows) {
   const Image8 unshadowed =
       renderer().render(request_for(*none.technique, box_on_ground())).picture;
   const Image8 picture = renderer().render(request_for(technique(), box_on_ground())).picture;
-  EXPECT_LT(metrics::rms_y(picture, truth), 0.5 * metrics::rms_y(unshadowed, truth));
+  EXPECT_LT(tests::rms_y(picture, truth), 0.5 * metrics::rms_y(unshadowed, truth));
 }
 
 TEST_P(Conformance, comes_as_near_the_reference_as_its_folder_promises) {
@@ -225,7 +226,7 @@ TEST_P(Conformance, comes_as_near_the_reference_as_its_folder_promises) {
     request.visibility = false;
     const Image8 truth = renderer().render(request).picture;
     request.technique = &technique();
-    EXPECT_LE(metrics::rms_y(renderer().render(request).picture, truth),
+    EXPECT_LE(tests::rms_y(renderer().render(request).picture, truth),
               bounds.at("rms_y_max").get<double>());
   }
 }

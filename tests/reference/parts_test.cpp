@@ -7,10 +7,10 @@
 #include "renderer/error.h"
 #include "renderer/frame/rounds.h"
 #include "renderer/frame/window.h"
-#include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::testing {
 namespace {
@@ -131,7 +131,7 @@ TEST_F(PicturesInParts, AverageRoundsOfPointsToTheMeanOfAll) {
     ASSERT_NEAR(in_rounds.visibility.pixels[i], at_once.visibility.pixels[i], 2e-4f);
   ASSERT_TRUE(in_rounds.noise_rms_y && at_once.noise_rms_y);
   EXPECT_NEAR(*in_rounds.noise_rms_y, *at_once.noise_rms_y, 0.01 * *at_once.noise_rms_y);
-  EXPECT_LE(metrics::rms_y(in_rounds.picture, at_once.picture), 0.05);
+  EXPECT_LE(tests::rms_y(in_rounds.picture, at_once.picture), 0.05);
 }
 
 TEST_F(PicturesInParts, StopOnceTheErrorIsWithinItsBound) {
@@ -145,7 +145,7 @@ TEST_F(PicturesInParts, StopOnceTheErrorIsWithinItsBound) {
   wanted.error_bound = 0.0;
   wanted.light_samples = 16384;
   wanted.seed = 77;
-  EXPECT_LE(metrics::rms_y(stopped.picture, renderer_->render(wanted).picture), 2.0 * 0.3);
+  EXPECT_LE(tests::rms_y(stopped.picture, renderer_->render(wanted).picture), 2.0 * 0.3);
 }
 
 TEST_F(PicturesInParts, SayWhereTheirErrorCannotBeBounded) {
@@ -186,10 +186,10 @@ TEST_F(PicturesInParts, AreTakenUpAgainToTheSameBytes) {
   for (Renderer* renderer : {renderer_, in_windows_}) {
     const RenderResult whole = renderer->render(wanted);
     const RenderResult resumed = broken_off(*renderer, wanted, 3);
-    EXPECT_EQ(resumed.picture.pixels, whole.picture.pixels);
-    EXPECT_EQ(resumed.linear.pixels, whole.linear.pixels);
-    EXPECT_EQ(resumed.visibility.pixels, whole.visibility.pixels);
-    EXPECT_EQ(resumed.uncertainty.pixels, whole.uncertainty.pixels);
+    EXPECT_TRUE(tests::same(resumed.picture, whole.picture));
+    EXPECT_TRUE(tests::same(resumed.linear, whole.linear));
+    EXPECT_TRUE(tests::same(resumed.visibility, whole.visibility));
+    EXPECT_TRUE(tests::same(resumed.uncertainty, whole.uncertainty));
     EXPECT_NE(resumed.notes, whole.notes);
   }
 }
@@ -207,7 +207,7 @@ TEST_F(PicturesInParts, BeginAnewFromAStateThatIsNotTheirs) {
   for (const std::string& bytes : {state, state.substr(0, 20), std::string("nonsense")}) {
     RenderControl rest;
     rest.resume = bytes;
-    EXPECT_EQ(renderer_->render(wanted, rest).picture.pixels, whole.picture.pixels);
+    EXPECT_TRUE(tests::same(renderer_->render(wanted, rest).picture, whole.picture));
   }
 }
 

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "renderer/error.h"
-#include "renderer/metrics/metrics.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra {
 namespace {
@@ -94,8 +94,8 @@ TEST_F(ReferencePicture, OfALightWithoutExtentIsThatOfOneRay) {
   const auto hard = std::make_shared<const Scene>(scene);
   const RenderResult reference = render(request(hard, "reference"));
   const RenderResult traced = render(request(hard, "ray-traced"));
-  EXPECT_EQ(reference.picture.pixels, traced.picture.pixels);
-  EXPECT_EQ(reference.visibility.pixels, traced.visibility.pixels);
+  EXPECT_TRUE(tests::same(reference.picture, traced.picture));
+  EXPECT_TRUE(tests::same(reference.visibility, traced.visibility));
   for (const float visibility : traced.visibility.pixels)
     EXPECT_TRUE(visibility == 0.0f || visibility == 1.0f);
 }
@@ -105,7 +105,7 @@ TEST_F(ReferencePicture, IsTheSameForTheSameSeedAndOnlyForIt) {
   wanted.linear = true;
   const RenderResult first = render(wanted);
   const RenderResult second = render(wanted);
-  EXPECT_EQ(first.linear.pixels, second.linear.pixels);
+  EXPECT_TRUE(tests::same(first.linear, second.linear));
   wanted.seed = 2;
   EXPECT_NE(first.linear.pixels, render(wanted).linear.pixels);
 }
@@ -117,8 +117,8 @@ TEST_F(ReferencePicture, ConvergesToOnePictureHoweverPointsAreChosen) {
   wanted.parameters["sampling"] = std::string("random");
   const RenderResult random = render(wanted);
   // Random points: a standard deviation of at most 1/64 in penumbrae, which fill a part only.
-  EXPECT_LT(metrics::visibility_error(random.visibility, even.visibility, even.judged).rms, 0.01);
-  EXPECT_LT(metrics::rms_y(random.picture, even.picture), 1.0);
+  EXPECT_LT(tests::visibility_error(random.visibility, even.visibility, even.judged).rms, 0.01);
+  EXPECT_LT(tests::rms_y(random.picture, even.picture), 1.0);
 }
 
 TEST_F(ReferencePicture, SharesPointsAmongTheSamplesOfAPixel) {
@@ -127,16 +127,16 @@ TEST_F(ReferencePicture, SharesPointsAmongTheSamplesOfAPixel) {
   const RenderResult coarse = render(wanted);
   wanted.supersampling = 4;
   const RenderResult fine = render(wanted);
-  const auto error = metrics::visibility_error(fine.visibility, coarse.visibility, coarse.judged);
+  const auto error = tests::visibility_error(fine.visibility, coarse.visibility, coarse.judged);
   EXPECT_LT(error.rms, 0.01);
 }
 
 TEST_F(ReferencePicture, LightsFromTheCentreInVisibilityModeOnly) {
   const RenderResult shaded = render(request("boxes", "reference"));
   const RenderResult visibility = render(request("boxes", "reference", {{"mode", "visibility"}}));
-  EXPECT_EQ(shaded.visibility.pixels, visibility.visibility.pixels);
+  EXPECT_TRUE(tests::same(shaded.visibility, visibility.visibility));
   EXPECT_NE(shaded.picture.pixels, visibility.picture.pixels);
-  EXPECT_LT(metrics::rms_y(shaded.picture, visibility.picture), 4.0);
+  EXPECT_LT(tests::rms_y(shaded.picture, visibility.picture), 4.0);
 }
 
 TEST_F(ReferencePicture, LetsNoLightIntoAClosedRoom) {
@@ -241,7 +241,7 @@ TEST_F(ReferencePicture, SoftensWithTheRaysOfRayTracing) {
   for (const std::int64_t rays : {1, 8, 64}) {
     const RenderResult traced = render(request("half-plane", "ray-traced", {{"rays", rays}}));
     const double rms =
-        metrics::visibility_error(traced.visibility, reference.visibility, reference.judged).rms;
+        tests::visibility_error(traced.visibility, reference.visibility, reference.judged).rms;
     EXPECT_LT(rms, 0.5 * last) << rays << " rays";
     last = rms;
   }

@@ -5,6 +5,7 @@
 #include "hard_truth.h"
 #include "renderer/metrics/metrics.h"
 #include "scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -16,7 +17,7 @@ metrics::VisibilityError error_of(const std::shared_ptr<const Scene>& scene,
                                   const ParameterValues& parameters = {}) {
   const ImageF truth = HardTruth(*scene).visibility("", size, size);
   const RenderResult result = draw(scene, technique, parameters, size);
-  return metrics::visibility_error(result.visibility, truth, result.judged);
+  return tests::visibility_error(result.visibility, truth, result.judged);
 }
 
 class Bias : public testing::TestWithParam<const char*> {};
@@ -30,7 +31,7 @@ TEST_P(Bias, needs_no_tuning) {
     SCOPED_TRACE(strategy);
     const RenderResult result =
         draw(scene, "shadow-map", {{"bias_strategy", std::string(strategy)}}, size);
-    const auto error = metrics::visibility_error(result.visibility, truth, result.judged);
+    const auto error = tests::visibility_error(result.visibility, truth, result.judged);
     EXPECT_GT(error.judged, 5000u);
     EXPECT_NEAR(error.bias, 0.0, 0.004);
     EXPECT_LT(error.false_shadow, 0.02);

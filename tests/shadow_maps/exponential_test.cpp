@@ -8,7 +8,7 @@
 #include "drawing.h"
 #include "plates.h"
 #include "renderer/error.h"
-#include "renderer/metrics/metrics.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -177,7 +177,7 @@ TEST_P(TwoLayers, equal_percentage_closer_filtering) {
     const RenderResult bound = draw(scene, technique, parameters, 100);
     const RenderResult counted = draw(scene, "pcf", {{"kernel", 2 * radius + 1}}, 100);
     const auto error =
-        metrics::visibility_error(bound.visibility, counted.visibility, counted.judged);
+        tests::visibility_error(bound.visibility, counted.visibility, counted.judged);
     EXPECT_LT(error.rms, 0.02) << radius;
   }
 }

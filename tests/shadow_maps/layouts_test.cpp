@@ -13,6 +13,7 @@
 #include "renderer/shadow_maps/layout.h"
 #include "scenes.h"
 #include "techniques/layout_matrix.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -66,7 +67,7 @@ metrics::VisibilityError error_of(const Scene& scene, const ImageF& truth,
                                   const std::string& technique, const ParameterValues& parameters) {
   const RenderResult result = draw(scene, technique, parameters, picture);
   EXPECT_EQ(result.non_finite_pixels, 0u);
-  return metrics::visibility_error(result.visibility, truth, result.judged);
+  return tests::visibility_error(result.visibility, truth, result.judged);
 }
 
 TEST(Layouts, every_filter_on_every_layout_is_near_the_truth) {

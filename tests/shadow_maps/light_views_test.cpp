@@ -7,8 +7,8 @@
 
 #include "drawing.h"
 #include "hard_truth.h"
-#include "renderer/metrics/metrics.h"
 #include "scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -59,7 +59,7 @@ TEST(LightViews, a_point_light_casts_shadows_in_all_directions) {
   }
   const ImageF truth = HardTruth(scene).visibility("", 200, 200);
   const RenderResult result = draw(scene, "shadow-map", {}, 200);
-  const auto error = metrics::visibility_error(result.visibility, truth, result.judged);
+  const auto error = tests::visibility_error(result.visibility, truth, result.judged);
   EXPECT_LT(error.false_shadow, 0.01);
   EXPECT_LT(error.missing_shadow, 0.01);
 }
@@ -72,7 +72,7 @@ TEST(LightViews, a_directional_light_shadows_along_its_direction) {
   scene.lights.push_back(light);
   const ImageF truth = HardTruth(scene).visibility("", 200, 200);
   const RenderResult result = draw(scene, "shadow-map", {}, 200);
-  const auto error = metrics::visibility_error(result.visibility, truth, result.judged);
+  const auto error = tests::visibility_error(result.visibility, truth, result.judged);
   EXPECT_LT(error.false_shadow, 0.005);
   EXPECT_LT(error.missing_shadow, 0.005);
 }

@@ -7,8 +7,8 @@
 
 #include "drawing.h"
 #include "hard_truth.h"
-#include "renderer/metrics/metrics.h"
 #include "scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -71,7 +71,7 @@ TEST(SoftShadows, are_as_wide_where_the_map_keeps_1_z) {
 TEST(SoftShadows, a_light_without_extent_casts_the_filters_own_border) {
   Scene scene = edge_at(1.0);
   scene.lights[0].extent = {};
-  EXPECT_EQ(draw(scene, "pcss").visibility.pixels, draw(scene, "pcf-bilinear").visibility.pixels);
+  EXPECT_TRUE(tests::same(draw(scene, "pcss").visibility, draw(scene, "pcf-bilinear").visibility));
 }
 
 /// Ground under a square light of 1 m that stands upright, its middle 0.25 m over the ground's
@@ -142,7 +142,7 @@ TEST(Variance, equals_percentage_closer_for_parallel_caster_and_receiver) {
     const RenderResult counted =
         draw(scene, "pcf", {{"kernel", std::int64_t{2 * radius + 1}}}, 100);
     const auto error =
-        metrics::visibility_error(variance.visibility, counted.visibility, counted.judged);
+        tests::visibility_error(variance.visibility, counted.visibility, counted.judged);
     EXPECT_LT(error.rms, 0.01) << radius;
   }
 }
@@ -152,7 +152,7 @@ double bleeding(std::int64_t blur, double reduction) {
   static const ImageF truth = HardTruth(*scene).visibility("", 150, 150);
   const RenderResult result =
       draw(scene, "vsm", {{"blur", blur}, {"bleeding_reduction", reduction}}, 150);
-  return metrics::visibility_error(result.visibility, truth, result.judged).missing_shadow;
+  return tests::visibility_error(result.visibility, truth, result.judged).missing_shadow;
 }
 
 TEST(Variance, bleeds_more_with_wider_blurs_and_less_with_reduction) {

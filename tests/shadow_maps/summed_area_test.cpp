@@ -3,7 +3,7 @@
 
 #include "drawing.h"
 #include "plates.h"
-#include "renderer/metrics/metrics.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
 namespace {
@@ -34,7 +34,7 @@ double table_error(const std::string& preset, std::int64_t map_size, std::int64_
                                   150);
   const RenderResult counted =
       draw(scene, "pcf", {{"map_size", map_size}, {"kernel", kernel}}, 150);
-  return metrics::visibility_error(bound.visibility, counted.visibility, counted.judged).rms;
+  return tests::visibility_error(bound.visibility, counted.visibility, counted.judged).rms;
 }
 
 TEST(SummedArea, precise_tables_equal_counted_comparisons_for_any_kernel) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/error.h"
+#include "tests/kept_pictures/kept_pictures.h"
 #include "tests/volumes/drawing.h"
 #include "tests/volumes/exact_rays.h"
 
@@ -216,8 +217,8 @@ TEST(SoftVolumes, serve_a_light_that_is_a_line) {
     lamp.extent.size = wide ? glm::dvec2(0.8, 0.0) : glm::dvec2(0.0, 0.8);
     const RenderResult truth = draw(scene, "reference", {}, {}, width);
     const auto error_of = [&](const char* technique) {
-      return metrics::visibility_error(draw(scene, technique, {}, {}, width).visibility,
-                                       truth.visibility, truth.judged)
+      return tests::visibility_error(draw(scene, technique, {}, {}, width).visibility,
+                                     truth.visibility, truth.judged)
           .rms;
     };
     EXPECT_LT(error_of("soft-shadow-volumes"), 0.02);

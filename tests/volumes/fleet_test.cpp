@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "scenes/built_in/built_in.h"
+#include "tests/kept_pictures/kept_pictures.h"
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
@@ -18,8 +19,7 @@ TEST_P(Fleets, have_planes_for_every_aircraft_and_shadows_as_good_as_one_has) {
   const Scene scene = scenes::make_fleet(GetParam());
   const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
   const auto missing = [&](const RenderResult& result) {
-    return metrics::visibility_error(result.visibility, rays.visibility, rays.judged)
-        .missing_shadow;
+    return tests::visibility_error(result.visibility, rays.visibility, rays.judged).missing_shadow;
   };
   const RenderResult own = draw(scene, "occluder-textures");
   EXPECT_LT(missing(own), 0.35 * missing(draw(scene, "none")));

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/kept_pictures/kept_pictures.h"
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
@@ -64,8 +65,8 @@ TEST(Hybrid, removes_the_acne_of_a_map_without_bias) {
   const RenderResult rays = draw(scene, "ray-traced", {{"rays", std::int64_t{1}}});
   const ParameterValues no_bias{{"bias_strategy", std::string("constant")}, {"slope_scale", 0.0}};
   const auto false_shadow = [&](const char* technique, const ParameterValues& parameters) {
-    return metrics::visibility_error(draw(scene, technique, parameters).visibility, rays.visibility,
-                                     rays.judged)
+    return tests::visibility_error(draw(scene, technique, parameters).visibility, rays.visibility,
+                                   rays.judged)
         .false_shadow;
   };
   const double map = false_shadow("shadow-map", no_bias);

@@ -4,6 +4,7 @@
 
 #include "scenes/document.h"
 #include "techniques/occluder-textures/picture.h"
+#include "tests/kept_pictures/kept_pictures.h"
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
@@ -73,7 +74,7 @@ RenderResult rays_of(const Scene& scene) {
 }
 
 metrics::VisibilityError error_of(const RenderResult& result, const RenderResult& truth) {
-  return metrics::visibility_error(result.visibility, truth.visibility, truth.judged);
+  return tests::visibility_error(result.visibility, truth.visibility, truth.judged);
 }
 
 TEST(OccluderTextures, of_a_flat_plate_are_its_shadow) {

@@ -12,6 +12,7 @@
 #include "techniques/registry.h"
 #include "tests/conformance/plan/scattered.h"
 #include "tests/conformance/scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra {
 namespace {
@@ -226,7 +227,7 @@ Scene floor_above_a_distant_thing() {
 }
 
 double false_and_missing(const RenderResult& result, const RenderResult& truth) {
-  const auto error = metrics::visibility_error(result.visibility, truth.visibility, result.judged);
+  const auto error = tests::visibility_error(result.visibility, truth.visibility, result.judged);
   return error.false_shadow + error.missing_shadow;
 }
 
@@ -249,7 +250,7 @@ TEST(DepthRange, spares_maps_of_few_bits_the_depth_that_nothing_needs) {
   request.parameters["depth_bits"] = std::string("16");
   const auto missing = [&] {
     const RenderResult result = renderer().render(request);
-    return metrics::visibility_error(result.visibility, exact.visibility, result.judged)
+    return tests::visibility_error(result.visibility, exact.visibility, result.judged)
         .missing_shadow;
   };
   // Over the whole depth a step would be half a metre, and the box, half a metre high, cast
@@ -346,9 +347,9 @@ TEST_P(PlannedTechnique, draws_the_same_bytes_with_and_without_each_rule) {
     for (const PlanRules& rules : variants) {
       request.rules = rules;
       const RenderResult result = renderer().render(request);
-      EXPECT_EQ(result.picture.pixels, planned.picture.pixels);
-      EXPECT_EQ(result.visibility.pixels, planned.visibility.pixels);
-      EXPECT_EQ(result.judged.pixels, planned.judged.pixels);
+      EXPECT_TRUE(tests::same(result.picture, planned.picture));
+      EXPECT_TRUE(tests::same(result.visibility, planned.visibility));
+      EXPECT_TRUE(tests::same(result.judged, planned.judged));
     }
   }
 }
