@@ -25,6 +25,7 @@ after(async () => {
 const screens = {
   "a desktop in light mode": { viewport: { width: 1440, height: 900 }, colorScheme: "light" },
   "a desktop in dark mode": { viewport: { width: 1440, height: 900 }, colorScheme: "dark" },
+  "a tablet 768 pixels wide": { viewport: { width: 768, height: 1024 }, colorScheme: "dark", hasTouch: true },
   "a phone 360 pixels wide": { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, hasTouch: true },
 };
 

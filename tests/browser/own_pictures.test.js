@@ -63,6 +63,27 @@ test("pictures of one's own are uploaded in the editor and written into the stud
   assert.deepEqual(document.techniques, ["none", "shadow-map", element, "reference"]);
 });
 
+test("files dropped onto the field are uploaded too", async () => {
+  await page.goto(`${server.base}/lab#edit/photographs`);
+  await page.getByLabel("Study file (JSON)").waitFor();
+  const bytes = [...await file_of("image/webp")];
+  const dropped = await page.evaluateHandle((data) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([new Uint8Array(data)], "Dropped one.webp", { type: "image/webp" }));
+    transfer.items.add(new File([new Uint8Array(data).slice(0, 40)], "cut.webp", { type: "image/webp" }));
+    return transfer;
+  }, bytes);
+  const field = page.locator("section", { has: page.getByLabel("Picture files") });
+  for (const event of ["dragenter", "dragover", "drop"]) await field.dispatchEvent(event, { dataTransfer: dropped });
+  await page.getByText("Dropped one.webp, 128 by 128 pixels").waitFor();
+  await page.getByText("cut.webp: ").waitFor();
+  const { id, picture } = JSON.parse(await page.locator(".own-pictures code").innerText());
+  assert.equal(id, "dropped-one");
+  assert.equal((await fetch(`${server.base}/api/v1/pictures/${picture}`, { headers: { Authorization: `Bearer ${server.token}` } })).status, 200);
+  assert.match(page.url(), /#edit\/photographs$/, "the browser did not open the file instead");
+  await page.goto(`${server.base}/lab#study/photographs`);
+});
+
 test("a person ranks them among rendered ones, and nothing tells which are which", async () => {
   await page.getByRole("button", { name: "Render the pictures and publish" }).click();
   await page.getByRole("link", { name: /\/s\/photographs$/ }).waitFor({ timeout: 120_000 });

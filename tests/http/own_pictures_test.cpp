@@ -236,6 +236,37 @@ TEST_F(OwnPictures, AreShownRankedAndExportedLikeRenders) {
   EXPECT_EQ(own, 1);
 }
 
+TEST_F(OwnPictures, TooWideForWebPStayPngForEverybody) {
+  // WebP holds 16383 pixels a side (RFC 9649, 2.5), a PNG and a study more.
+  const auto wide = [](std::uint8_t grey) {
+    Image8 picture(16384, 2, 4, 255);
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      for (std::uint32_t c = 0; c < 3; ++c)
+        picture.at(x, 1, c) = static_cast<std::uint8_t>(x % grey);
+    return picture;
+  };
+  auto document_of_wide = document("");
+  document_of_wide["picture"] = {{"width", 16384}, {"height", 2}};
+  document_of_wide["techniques"] = json::array();
+  for (const std::uint8_t grey : {100, 200})
+    document_of_wide["techniques"].push_back(
+        {{"id", "grey-" + std::to_string(grey)},
+         {"picture", stored(scenes::encode_png(wide(grey)))["picture"]}});
+  document_of_wide["pages"] = json::array({{{"scene", "nowhere"}}});
+  body_of(post_study(document_of_wide.dump()), 201, "Study");
+  ASSERT_EQ(publish("photographs"), "open");
+  const auto person =
+      body_of(post("/api/v1/studies/photographs/participants", json::object()), 201, "Enrolment");
+  for (const std::uint8_t grey : {100, 200}) {
+    const auto url = url_of(person, wide(grey));
+    const auto reply = client->Get(url, {{"Accept", "image/webp,*/*"}});
+    EXPECT_EQ(reply->get_header_value("Content-Type"), "image/png");
+    EXPECT_EQ(reply->get_header_value("Vary"), "Accept");
+    EXPECT_EQ(scenes::decode_picture(reply->body).pixels, wide(grey).pixels);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path / "data" / "webp"));
+}
+
 TEST_F(OwnPictures, AloneNeedNoScene) {
   const auto first = stored(scenes::encode_png(half_and_half()))["picture"];
   const auto second = stored(scenes::encode_png(half_and_half(200)))["picture"];
