@@ -73,9 +73,9 @@ class ReportWriter {
     return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-           escaped(title) + "</title>\n<style>\n" + css + "</style>\n</head>\n<body>\n" +
+           escaped(title) + "</title>\n<style>\n" + css + "</style>\n</head>\n<body>\n<main>\n" +
            element("h1", escaped(title)) + identity() + warnings() + asked() + people() + arms() +
-           results() + sets() + pairs() + methods() + "</body>\n</html>\n";
+           results() + sets() + pairs() + methods() + "</main>\n</body>\n</html>\n";
   }
 
  private:

@@ -1,7 +1,7 @@
 // Starts the real server on a free port with an empty data folder, and talks to its API.
 
 import { spawn } from "node:child_process";
-import { mkdtemp, rm } from "node:fs/promises";
+import { mkdtemp, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -75,6 +75,18 @@ export class Server {
       if (Date.now() > deadline) throw new Error(`still ${state.status} after ${publish_ms} ms`);
       await sleep(200);
     }
+  }
+
+  /// Lets people with known preferences take part in a study, published or not.
+  async simulate(study, ...options) {
+    const file = path.join(this.data, `${study.id}.json`);
+    await writeFile(file, JSON.stringify(study));
+    const url = `${this.base}/lab?token=${this.token}`;
+    const simulation = spawn(program, ["simulate-study", file, "--url", url, ...options], { stdio: ["ignore", "ignore", "pipe"] });
+    let said = "";
+    simulation.stderr.on("data", (text) => (said += text));
+    const status = await new Promise((resolve) => simulation.once("exit", resolve));
+    if (status !== 0) throw new Error(`simulate-study ended with ${status}: ${said}`);
   }
 
   /// Rows of responses.csv as objects. The cells asked for here hold no commas or quotes.

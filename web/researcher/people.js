@@ -66,7 +66,7 @@ class PeopleView {
   row(person) {
     return h("tr", { class: person.excluded ? "excluded" : "" },
       h("th", { scope: "row" }, h("code", {}, person.participant), person.test ? h("span", { class: "badge" }, "preview") : null,
-        person.arm ? h("small", {}, person.arm) : null),
+        person.arm ? [h("br"), h("small", {}, person.arm)] : null),
       h("td", {}, `${outcomes[person.outcome]}, ${person.answered} of ${person.pages} pages`, h("br"), h("small", {}, clock(person.entered_at))),
       h("td", {}, person.flags.length ? flag_items(person.flags) : h("span", { class: "small" }, "no flags"), timeline(person)),
       h("td", {}, person.test ? h("span", { class: "small" }, "never counted")

@@ -2,6 +2,7 @@
 // (tables 4.3 to 4.9), and with their 95% intervals.
 
 import { h, s } from "/assets/shared/dom.js";
+import { plain_table } from "./tables.js";
 import { fixed, probability, significant } from "./words.js";
 
 const sets = {
@@ -36,11 +37,14 @@ function subset_table(part, label, alpha) {
         subset.includes(technique.technique) ? fixed(mean_of(technique), 2) : ""))))));
 }
 
+const letter_px = 12;  // of a bold letter in the figure, generously
+
 /// Means as points and 95% intervals as bars over ranks 1 (most realistic) to the number of techniques.
 function interval_figure(part, label) {
   const { techniques } = part;
-  const [row, left, right, top] = [30, 110, 24, 14];
-  const width = 560;
+  const longest = Math.max(...techniques.map(({ technique }) => label(technique).length));
+  const [row, left, right, top] = [30, 14 + letter_px * longest, 24, 14];
+  const width = left + 450;
   const height = top + row * techniques.length + 40;
   const highest = Math.max(2, techniques.length);
   const x = (rank) => left + ((rank - 1) / (highest - 1)) * (width - left - right);
@@ -88,17 +92,11 @@ function part_section(name, part, label, alpha) {
 function arms_section(arms) {
   if (!arms) return null;
   const share = (value) => `${fixed(100 * value, 0)}%`;
-  const table = (caption, columns, rows) => h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    h("table", { class: "plain" }, h("caption", {}, caption),
-      h("thead", {}, h("tr", {}, columns.map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rows.map(([name, ...cells]) => h("tr", {}, h("th", { scope: "row" }, name),
-        cells.map((cell) => h("td", { class: "number" }, cell)))))));
   return h("section", { class: "card result" }, h("h3", {}, "Ways of giving ranks"),
     h("p", { class: "small" }, "Who is not flagged as inverted read the scale right. Agreement is a person's rank correlation with everybody else, all arms taken together."),
-    table("Arms", ["Arm", "People", "Inverted", "Read right", "95% interval", "Agreement"], arms.list.map((arm) =>
-      [arm.arm, String(arm.participants), String(arm.inverted), share(arm.read_right),
-        arm.ci95.map(share).join(" to "), fixed(arm.mean_rho, 2)])),
-    table("Differences (Fisher's exact test)", ["Arms", "Difference", "p", "p (Holm)"], arms.comparisons.map((pair) =>
+    plain_table("Arms", ["Arm", "People", "Inverted", "Read right", "95% interval", "Agreement"], arms.list.map((arm) =>
+      [arm.arm, arm.participants, arm.inverted, share(arm.read_right), arm.ci95.map(share).join(" to "), fixed(arm.mean_rho, 2)])),
+    plain_table("Differences (Fisher's exact test)", ["Arms", "Difference", "p", "p (Holm)"], arms.comparisons.map((pair) =>
       [`${pair.a} − ${pair.b}`, `${fixed(100 * pair.difference, 0)} points`, probability(pair.p_value), probability(pair.p_holm)])));
 }
 
@@ -106,10 +104,8 @@ function flags_table(flags) {
   if (!flags.length) return null;
   return h("section", { class: "card" }, h("h3", {}, "Flags"),
     h("p", { class: "small" }, "Reasons to look again. Nobody is left out because of them unless you choose the set without them."),
-    h("table", { class: "plain" }, h("thead", {}, h("tr", {}, ["Participant", "Flag", "Value", "Threshold"].map((name) =>
-      h("th", { scope: "col" }, name)))),
-    h("tbody", {}, flags.map((flag) => h("tr", {}, h("th", { scope: "row" }, flag.participant), h("td", {}, flag.flag.replaceAll("_", " ")),
-      h("td", { class: "number" }, significant(flag.value)), h("td", { class: "number" }, significant(flag.threshold)))))));
+    plain_table("Flags of participants", ["Participant", "Flag", "Value", "Threshold"], flags.map((flag) =>
+      [flag.participant, flag.flag.replaceAll("_", " "), significant(flag.value), significant(flag.threshold)]), { captioned: false }));
 }
 
 /// Results that are updated while answers come in. The choice of participants stays as it is, focus

@@ -5,6 +5,7 @@ import { get, post, remove, sleep } from "/assets/shared/http.js";
 import { ask } from "./dialogs.js";
 import { Results } from "./results.js";
 import { status_badge } from "./studies.js";
+import { plain_table } from "./tables.js";
 import { versions_table } from "./versions.js";
 import { words_of } from "./words.js";
 
@@ -56,30 +57,22 @@ function figures_list(path) {
 
 /// How often each picture was answered at each position: gaps in the balance are seen here.
 function cells_table({ id, cells }) {
-  const slots = cells[0].answers_by_slot.map((_, slot) => h("th", { scope: "col" }, String(slot + 1)));
-  return h("details", {}, h("summary", {}, id),
-    h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Answers by position: ${id}` },
-      h("table", { class: "plain" }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Picture at position"), slots)),
-        h("tbody", {}, cells.map(({ picture, answers_by_slot }) => h("tr", {}, h("th", { scope: "row" }, picture),
-          answers_by_slot.map((count) => h("td", { class: "number" }, String(count)))))))));
+  const slots = cells[0].answers_by_slot.map((_, slot) => String(slot + 1));
+  return h("details", {}, h("summary", {}, id), plain_table(`Answers by position: ${id}`, ["Picture at position", ...slots],
+    cells.map(({ picture, answers_by_slot }) => [picture, ...answers_by_slot]), { captioned: false }));
 }
 
 /// People by way of giving ranks, where there are several.
 function arms_table(study) {
   if (study.arms.length === 0) return null;
-  return h("table", { class: "plain" }, h("caption", {}, "People by arm"),
-    h("thead", {}, h("tr", {}, ["Arm", "Entered", "Answered all pages"].map((name) => h("th", { scope: "col" }, name)))),
-    h("tbody", {}, study.arms.map(({ arm, entered, answered_all }) => h("tr", {}, h("th", { scope: "row" }, arm),
-      [entered, answered_all].map((count) => h("td", { class: "number" }, String(count)))))));
+  return plain_table("People by arm", ["Arm", "Entered", "Answered all pages"],
+    study.arms.map(({ arm, entered, answered_all }) => [arm, entered, answered_all]));
 }
 
 function pages_table(study) {
   if (study.scenes.length === 0) return null;
-  return [h("table", { class: "plain" }, h("caption", {}, "Answers so far"),
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Page"), h("th", { scope: "col" }, "Answers"))),
-    h("tbody", {}, study.scenes.map(({ id, answers }) => h("tr", {}, h("th", { scope: "row" }, id),
-      h("td", { class: "number" }, String(answers)))))),
-  h("details", { class: "cells" }, h("summary", {}, "Answers by picture and position"), study.scenes.map(cells_table))];
+  return [plain_table("Answers so far", ["Page", "Answers"], study.scenes.map(({ id, answers }) => [id, answers])),
+    h("details", { class: "cells" }, h("summary", {}, "Answers by picture and position"), study.scenes.map(cells_table))];
 }
 
 function progress_of(study) {
