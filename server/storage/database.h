@@ -57,8 +57,8 @@ class Database {
     }
   }
 
-  /// Runs `work(Connection&)` on a read-only connection, in a snapshot. There are a few connections:
-  /// `work` must not read in turn.
+  /// Runs `work(Connection&)` on a read-only connection, in a snapshot. There are a few
+  /// connections: `work` must not read in turn.
   template <class Work>
   auto read(Work work) {
     return guarded([&] {

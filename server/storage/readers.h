@@ -11,9 +11,9 @@
 
 namespace penumbra::server::storage {
 
-/// Reading connections, opened when they are first needed and kept. Who waits for one gets it in the
-/// order of asking: under a crowd, a free-for-all would make some wait for many times the median.
-/// Thread-safe.
+/// Reading connections, opened when they are first needed and kept. Who waits for one gets it in
+/// the order of asking: under a crowd, a free-for-all would make some wait for many times the
+/// median. Thread-safe.
 class Readers {
  public:
   using Open = std::function<std::unique_ptr<Connection>()>;
