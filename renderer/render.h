@@ -21,6 +21,7 @@ struct RenderLimits {
   static constexpr std::uint32_t max_size = 16384;  ///< pixels, width or height
   static constexpr std::uint32_t max_light_samples = 65536;
   static constexpr std::uint32_t max_frames = 1000;
+  static constexpr std::size_t max_camera_path = 1000;                    ///< cameras
   static constexpr double max_error_bound = 255.0;                        ///< levels of 8 bits
   static constexpr double max_exposure = 30.0;                            ///< EV, up or down
   static constexpr std::array<std::uint32_t, 3> supersampling{1, 4, 16};  ///< samples per pixel
@@ -48,6 +49,9 @@ struct PlanRules {
 struct RenderRequest {
   std::shared_ptr<const Scene> scene;
   std::string camera;  ///< empty: the scene's first
+  /// Where the camera was before: a frame of each is drawn first, in order. Techniques that keep
+  /// something from frame to frame bring it to the picture.
+  std::vector<Camera> earlier_cameras;
   const TechniqueDescription* technique = nullptr;
   ParameterValues parameters;          ///< of the technique; missing ones take their defaults
   std::uint32_t width = 600;           ///< pixels

@@ -119,12 +119,23 @@ void read_camera(const json& value, const std::string& path, Camera& camera) {
   JsonReader reader(value, path);
   reader.text("name", camera.name);
   reader.vector("position", camera.position, -max_coordinate, max_coordinate);
+  if (reader.has("direction") && reader.has("target"))
+    reader.fail("direction", "and target exclude each other");
   reader.vector("target", camera.target, -max_coordinate, max_coordinate);
+  if (reader.has("direction")) {
+    glm::dvec3 direction(0.0);
+    reader.vector("direction", direction, -max_coordinate, max_coordinate);
+    if (direction == glm::dvec3(0.0)) reader.fail("direction", "must not be zero");
+    camera.target = camera.position + direction;
+  }
   reader.vector("up", camera.up, -max_coordinate, max_coordinate);
   if (!independent(camera.target - camera.position, camera.up))
     reader.fail("up", "must not lie along the line of sight");
   reader.choice("projection", camera.projection, projections);
-  reader.number("vertical_fov", camera.vertical_fov, 0.01, 179.99);
+  if (reader.has("vertical_fov") && reader.has("field_of_view"))
+    reader.fail("field_of_view", "and vertical_fov are two names of one angle");
+  for (const char* name : {"vertical_fov", "field_of_view"})
+    reader.number(name, camera.vertical_fov, 0.01, 179.99);
   reader.number("orthographic_height", camera.orthographic_height, 1e-9, max_coordinate);
   reader.number("near_plane", camera.near_plane, 1e-9, max_coordinate);
   reader.finish();

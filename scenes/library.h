@@ -37,5 +37,13 @@ std::string content_hash(const Scene& scene);
 /// "extent": {...}}, ...}, the keys of a light in the scene document. Throws bad_value naming the
 /// field (lights.NAME.key).
 Scene with_light_overrides(const Scene& scene, const nlohmann::json& overrides);
+/// The same for cameras: {"NAME": {"position": [x,y,z], "field_of_view": 40}, ...}.
+Scene with_camera_overrides(const Scene& scene, const nlohmann::json& overrides);
+
+/// The cameras of a path: each is `base` with the keys replaced that its element of the list has.
+/// Throws bad_value naming the field (camera_path[3].position).
+std::vector<Camera> camera_path(const Camera& base, const nlohmann::json& path);
+/// The same path with nothing left open.
+nlohmann::json camera_path_document(const std::vector<Camera>& path);
 
 }  // namespace penumbra::scenes

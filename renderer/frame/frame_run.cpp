@@ -15,6 +15,12 @@ namespace {
 
 using vulkan::Sampling;
 
+CameraMatrices picture_matrices(const RenderRequest& request, const GpuScene& scene,
+                                const Camera& camera) {
+  return camera_matrices(camera, scene.origin(),
+                         static_cast<double>(request.width) / request.height, scene.radius());
+}
+
 FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
                       const ParameterValues& parameters, const Plan& plan, const Window& window) {
   const Camera& camera = request.scene->cameras[find_camera(*request.scene, request.camera)];
@@ -23,8 +29,7 @@ FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
           parameters,
           scene,
           camera,
-          camera_matrices(camera, scene.origin(),
-                          static_cast<double>(request.width) / request.height, scene.radius()),
+          picture_matrices(request, scene, camera),
           {},
           samples_per_side(request.supersampling),
           window,
@@ -67,6 +72,16 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
       setup_(make_setup(state, request, parameters, plan_, window)),
       lights_(make_lights(setup_, plan_)),
       targets_(state.device, window, setup_.side, wanted_targets(in_rounds)) {}
+
+void FrameRun::look_through(const Camera& camera) {
+  const Plan plan =
+      make_plan(request_, setup_.parameters, state_.boxes_of(request_.scene), &camera);
+  // Lights' passes hold on to their fits.
+  std::copy(plan.fits.begin(), plan.fits.end(), plan_.fits.begin());
+  setup_.camera = camera;
+  setup_.picture_matrices = picture_matrices(request_, setup_.scene, camera);
+  notes_.clear();
+}
 
 FrameTargets::Wanted FrameRun::wanted_targets(bool in_rounds) const {
   if (!request_.diagnostic.empty() && first_light() == lights_.size())

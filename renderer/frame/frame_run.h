@@ -21,6 +21,8 @@ class FrameRun {
   FrameRun(Renderer::State& state, const RenderRequest& request, const ParameterValues& parameters,
            const Window& window, bool in_rounds);
 
+  /// Moves the camera between frames; what techniques keep from frame to frame stays.
+  void look_through(const Camera& camera);
   /// Draws a window with these of a pixel's light points, frame `index`. `progress` gets the share
   /// done of what takes long.
   void draw(const Window& window, PointRange round, std::uint32_t index, bool count_statistics,

@@ -14,7 +14,7 @@ struct FrameSetup {
   const RenderRequest& request;
   const ParameterValues& parameters;  ///< complete
   const GpuScene& scene;
-  const Camera& camera;
+  Camera camera;
   CameraMatrices picture_matrices;
   CameraMatrices matrices;
   std::uint32_t side = 1;    ///< samples along a pixel's side

@@ -72,6 +72,7 @@ RenderResult PictureRun::run() {
   const std::uint32_t warm_up = request_.frames > 1 ? 1 : 0;
   frames_total_ = warm_up + request_.frames;
   double create_ms = 0.0;
+  draw_earlier_cameras();
   take_up();
   bool settled = true;
   for (; frame_index_ < frames_total_; ++frame_index_) {
@@ -103,6 +104,24 @@ RenderResult PictureRun::run() {
   add_notes(result);
   state_.device.throw_if_validation_failed();
   return result;
+}
+
+void PictureRun::draw_earlier_cameras() {
+  if (request_.earlier_cameras.empty()) return;
+  const Scene& scene = *request_.scene;
+  const Camera& own = scene.cameras[find_camera(scene, request_.camera)];
+  // What the first counted frame counts is the picture's alone.
+  constexpr std::uint32_t not_counted = 1;
+  for (const Camera& camera : request_.earlier_cameras) {
+    frame_.look_through(camera);
+    for (const Window& window : windows_) {
+      state_.recorder.clear_records();
+      frame_.draw(window, rounds_.front(), not_counted, false, {});
+    }
+    ++cameras_done_;
+    report(0.0);
+  }
+  frame_.look_through(own);
 }
 
 bool PictureRun::settle() {
@@ -217,7 +236,8 @@ void PictureRun::report(double share_of_round) const {
     points = 1.0;
   }
   const double windows = (now_.window + points) / static_cast<double>(windows_.size());
-  control_.progress((frame_index_ + windows) / frames_total_);
+  control_.progress((static_cast<double>(cameras_done_) + frame_index_ + windows) /
+                    static_cast<double>(request_.earlier_cameras.size() + frames_total_));
 }
 
 void PictureRun::between_parts() {

@@ -37,6 +37,8 @@ class PictureRun {
   /// Draws frames that do not count until their times are steady (SteadyTimes); false where they
   /// never were.
   bool settle();
+  /// Draws a frame of each camera that goes before the picture's.
+  void draw_earlier_cameras();
   void draw_frame(std::uint32_t index);
   void draw_round(const Window& window, std::uint32_t index);
   /// Whether the window at hand needs no further round.
@@ -60,6 +62,7 @@ class PictureRun {
   std::vector<PointRange> rounds_;
   FrameRun frame_;
   bool goes_through_points_ = false;  ///< any light, those of the picture's light_samples
+  std::size_t cameras_done_ = 0;      ///< of the request's earlier ones
   std::uint32_t frames_total_ = 1;
   std::uint32_t frame_index_ = 0;
   Progress now_;

@@ -38,6 +38,12 @@ void check_request(const RenderRequest& request) {
     throw bad_value("exposure", "exposure must be -30 to 30 EV");
   if (request.frames == 0 || request.frames > RenderLimits::max_frames)
     throw bad_value("frames", "frames must be 1 to " + std::to_string(RenderLimits::max_frames));
+  // The last of a path is the picture's own camera.
+  if (request.earlier_cameras.size() >= RenderLimits::max_camera_path)
+    throw bad_value("camera_path", "camera_path must hold no more than " +
+                                       std::to_string(RenderLimits::max_camera_path) + " cameras");
+  for (std::size_t i = 0; i < request.earlier_cameras.size(); ++i)
+    validate_camera(request.earlier_cameras[i], "camera_path[" + std::to_string(i) + "]");
 }
 
 }  // namespace

@@ -150,9 +150,10 @@ std::uint64_t texture_bytes(const Texture& texture) {
 class Planner {
  public:
   Planner(const RenderRequest& request, const ParameterValues& parameters,
-          const std::vector<Bounds>& boxes)
-      : request_(request), scene_(*request.scene), boxes_(boxes) {
-    camera_ = &scene_.cameras[find_camera(scene_, request.camera)];
+          const std::vector<Bounds>& boxes, const Camera* through)
+      : request_(request), rules_(request.rules), scene_(*request.scene), boxes_(boxes) {
+    camera_ = through != nullptr ? through : &scene_.cameras[find_camera(scene_, request.camera)];
+    if (!request.earlier_cameras.empty()) rules_.lights = rules_.surfaces = rules_.casters = false;
     plan_.needs = requirements_of(request, parameters);
   }
 
@@ -160,7 +161,7 @@ class Planner {
     find_visible();
     plan_.instances.assign(scene_.instances.size(), {true, false});
     for (std::size_t i = 0; i < scene_.instances.size(); ++i)
-      plan_.instances[i].visible = !request_.rules.surfaces || !seen_[i].empty();
+      plan_.instances[i].visible = !rules_.surfaces || !seen_[i].empty();
     for (std::size_t l = 0; l < scene_.lights.size(); ++l) plan_light(l);
     explain_instances();
     plan_textures();
@@ -186,7 +187,7 @@ class Planner {
       for (const Bounds& box : seen_)
         if (!box.empty())
           if (const Bounds part = reach.lit(box); !part.empty()) lit.push_back(part);
-    const bool kept = !request_.rules.lights || !lit.empty();
+    const bool kept = !rules_.lights || !lit.empty();
     plan_.lights.push_back(kept);
     line("lights", light.name, !lit.empty(),
          lit.empty()
@@ -206,7 +207,7 @@ class Planner {
   }
 
   LightFit fit_of(const LightReach& reach, const std::vector<Bounds>& lit) const {
-    if (!request_.rules.depth_range) return {boxes_, boxes_};
+    if (!rules_.depth_range) return {boxes_, boxes_};
     LightFit fit;
     fit.receivers = lit;
     for (std::size_t i = 0; i < boxes_.size(); ++i)
@@ -242,7 +243,7 @@ class Planner {
   bool casts(const LightReach& reach, const Requirements& needs, const Bounds& caster,
              const std::vector<Bounds>& lit) const {
     if (needs.casters == CasterUse::none) return false;
-    if (!request_.rules.casters || needs.casters == CasterUse::all) return true;
+    if (!rules_.casters || needs.casters == CasterUse::all) return true;
     if (needs.casters == CasterUse::cone) return reach.in_filtered_cone(caster);
     return std::any_of(lit.begin(), lit.end(),
                        [&](const Bounds& part) { return reach.may_shadow(caster, part); });
@@ -274,7 +275,7 @@ class Planner {
   }
 
   void plan_textures() {
-    plan_.textures.assign(scene_.textures.size(), !request_.rules.textures);
+    plan_.textures.assign(scene_.textures.size(), !rules_.textures);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const InstanceUse& use = plan_.instances[i];
       for (const Primitive& primitive : scene_.meshes[scene_.instances[i].mesh].primitives) {
@@ -322,6 +323,7 @@ class Planner {
   }
 
   const RenderRequest& request_;
+  PlanRules rules_;
   const Scene& scene_;
   const std::vector<Bounds>& boxes_;
   const Camera* camera_;
@@ -364,8 +366,8 @@ std::vector<Bounds> instance_boxes(const Scene& scene) {
 }
 
 Plan make_plan(const RenderRequest& request, const ParameterValues& parameters,
-               const std::vector<Bounds>& boxes) {
-  return Planner(request, parameters, boxes).make();
+               const std::vector<Bounds>& boxes, const Camera* through) {
+  return Planner(request, parameters, boxes, through).make();
 }
 
 }  // namespace penumbra

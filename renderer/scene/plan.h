@@ -51,8 +51,9 @@ std::vector<Requirements> requirements_of(const RenderRequest& request,
                                           const ParameterValues& parameters);
 
 /// The plan of a request. `parameters` are complete. Asks the technique what each light requires
-/// and passes on its `unsupported`.
+/// and passes on its `unsupported`. `through`: a camera in place of the picture's, or null. Where
+/// frames of other cameras go first everything is kept: what one does not see the next may.
 Plan make_plan(const RenderRequest& request, const ParameterValues& parameters,
-               const std::vector<Bounds>& boxes);
+               const std::vector<Bounds>& boxes, const Camera* through = nullptr);
 
 }  // namespace penumbra

@@ -123,18 +123,6 @@ void validate_light(const Light& light, const std::string& where) {
           "extent of a directional light must stay within its half of the sky");
 }
 
-void validate_camera(const Camera& camera, const std::string& where) {
-  check(finite(camera.position) && finite(camera.target) && finite(camera.up), where,
-        "position, target and up must be finite");
-  check(independent(camera.target - camera.position, camera.up), where,
-        "up must not lie along the line of sight, and target must not be the position");
-  check(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0, where,
-        "vertical_fov must be above 0 and below 180");
-  check(finite(camera.orthographic_height) && camera.orthographic_height > 0.0, where,
-        "orthographic_height must be above 0");
-  check(finite(camera.near_plane) && camera.near_plane > 0.0, where, "near_plane must be above 0");
-}
-
 void validate_shadow_plane(const Scene& scene, const ShadowPlane& plane, const std::string& where) {
   check(finite(plane.center) && finite(plane.right) && finite(plane.up), where,
         "has a vector that is not finite");
@@ -205,6 +193,18 @@ Bounds world_bounds(const Scene& scene) {
   Bounds bounds;
   for (const Instance& instance : scene.instances) bounds.add(instance_bounds(scene, instance));
   return bounds;
+}
+
+void validate_camera(const Camera& camera, const std::string& where) {
+  check(finite(camera.position) && finite(camera.target) && finite(camera.up), where,
+        "position, target and up must be finite");
+  check(independent(camera.target - camera.position, camera.up), where,
+        "up must not lie along the line of sight, and target must not be the position");
+  check(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0, where,
+        "vertical_fov must be above 0 and below 180");
+  check(finite(camera.orthographic_height) && camera.orthographic_height > 0.0, where,
+        "orthographic_height must be above 0");
+  check(finite(camera.near_plane) && camera.near_plane > 0.0, where, "near_plane must be above 0");
 }
 
 std::size_t find_camera(const Scene& scene, const std::string& name) {

@@ -165,6 +165,9 @@ Bounds world_bounds(const Scene& scene);
 /// Index of the named camera, 0 for an empty name. Throws not_found naming the cameras there are.
 std::size_t find_camera(const Scene& scene, const std::string& name);
 
+/// Throws bad_value of field `where` unless the camera can draw.
+void validate_camera(const Camera& camera, const std::string& where);
+
 /// Checks indices, array lengths, finiteness and ranges of everything the renderer relies on.
 /// Throws unreadable naming the element at fault.
 void validate(const Scene& scene);

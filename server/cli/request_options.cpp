@@ -1,8 +1,11 @@
 #include "server/cli/request_options.h"
 
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "renderer/error.h"
+#include "scenes/document.h"
 
 namespace penumbra::server::cli {
 namespace {
@@ -12,6 +15,18 @@ std::pair<std::string, std::string> split(const std::string& flag, const std::st
   if (sign == std::string::npos || sign == 0)
     throw bad_value(flag, "--" + flag + " takes name=value, not \"" + text + "\"");
   return {text.substr(0, sign), text.substr(sign + 1)};
+}
+
+nlohmann::json camera_path_in(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!(text << stream.rdbuf()))
+    throw bad_value("camera_path", "--camera-path: cannot read " + file.string());
+  try {
+    return scenes::parse_json(text.str(), file.string());
+  } catch (const Error& error) {
+    throw bad_value("camera_path", error.what());
+  }
 }
 
 }  // namespace
@@ -24,6 +39,11 @@ void RequestOptions::add_to(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--light", lights, "Key of a light, NAME.key=value; may be repeated")
       ->allow_extra_args(false);
+  command
+      .add_option("--camera-set", camera_sets, "Key of a camera, NAME.key=value; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--camera-path", camera_path,
+                     "JSON file: list of cameras that are drawn in order; the last is the picture");
   const auto key = [&](const std::string& flag, const std::string& name,
                        const std::string& meaning) {
     command.add_option_function<std::string>(
@@ -68,8 +88,13 @@ CanonicalRequest RequestOptions::read(bool measure) const {
   }
   for (const std::string& text : lights) {
     const auto [path, value] = split("light", text);
-    add_light_override(request, path, value);
+    add_override(request, Changed::light, path, value);
   }
+  for (const std::string& text : camera_sets) {
+    const auto [path, value] = split("camera-set", text);
+    add_override(request, Changed::camera, path, value);
+  }
+  if (!camera_path.empty()) request["camera_path"] = camera_path_in(camera_path);
   request["measure"] = measure;
   return read_request(request, context());
 }

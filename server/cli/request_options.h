@@ -17,6 +17,8 @@ struct RequestOptions {
   std::string technique;
   std::vector<std::string> sets;            ///< name=value
   std::vector<std::string> lights;          ///< NAME.key=value
+  std::vector<std::string> camera_sets;     ///< NAME.key=value
+  std::filesystem::path camera_path;        ///< a JSON file, or empty
   std::map<std::string, std::string> keys;  ///< width, height, ...: those given
   std::filesystem::path data;
   std::string device;

@@ -101,6 +101,13 @@ class Reader {
     return *value;
   }
 
+  json list(const std::string& key) {
+    const json* value = find(key);
+    if (!value || value->is_null()) return json::array();
+    if (!value->is_array()) throw bad_value(key, key + " must be a list, not " + shown(*value));
+    return *value;
+  }
+
   void finish() const {
     for (const auto& [key, value] : request_.items()) {
       if (asked_.contains(key)) continue;
@@ -143,17 +150,38 @@ std::uint64_t supersampling_of(Reader& reader, std::uint64_t fallback) {
   return value;
 }
 
-/// Overrides of lights that the scene has and accepts; nothing where nothing is replaced.
-json checked_lights(const Scene& scene, json lights) {
-  for (auto entry = lights.begin(); entry != lights.end();) {
+/// Overrides of lights or cameras without those that replace nothing.
+json without_empty(json overrides) {
+  for (auto entry = overrides.begin(); entry != overrides.end();) {
     if (entry->is_object() && entry->empty()) {
-      entry = lights.erase(entry);
+      entry = overrides.erase(entry);
     } else {
       ++entry;
     }
   }
-  if (!lights.empty()) scenes::with_light_overrides(scene, lights);
-  return with_real_numbers(lights);
+  return with_real_numbers(overrides);
+}
+
+/// The scene with what a canonical request replaces. The last camera of a path is the picture's.
+std::shared_ptr<const Scene> changed_scene(const std::shared_ptr<const Scene>& scene,
+                                           const json& request) {
+  const json& lights = request.at("lights");
+  const json& cameras = request.at("cameras");
+  const json& path = request.at("camera_path");
+  if (lights.empty() && cameras.empty() && path.empty()) return scene;
+  auto changed = std::make_shared<Scene>(
+      lights.empty() ? *scene : scenes::with_light_overrides(*scene, lights));
+  if (!cameras.empty()) *changed = scenes::with_camera_overrides(*changed, cameras);
+  if (path.empty()) return changed;
+  Camera& own = changed->cameras.at(find_camera(*changed, request.at("camera")));
+  own = scenes::camera_path(own, json::array({path.back()})).front();
+  return changed;
+}
+
+/// Keeps of a path what a picture without memory of earlier frames depends on.
+void keep_last_camera(json& request) {
+  json& path = request.at("camera_path");
+  if (path.size() > 1) path = json::array({path.back()});
 }
 
 void identify(CanonicalRequest& canonical) {
@@ -181,6 +209,7 @@ CanonicalRequest same_view(const CanonicalRequest& request, const TechniqueDescr
   canonical.request["technique"] = technique.id;
   canonical.request["parameters"] = techniques::values_to_json(canonical.technique.parameters);
   canonical.request["diagnostic"] = "";
+  keep_last_camera(canonical.request);
   return canonical;
 }
 
@@ -207,7 +236,9 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
       reader.number("error_bound", defaults.error_bound, 0.0, RenderLimits::max_error_bound);
   const double exposure = reader.number("exposure", std::nan(""), -RenderLimits::max_exposure,
                                         RenderLimits::max_exposure);
-  const json lights = reader.object("lights");
+  out["lights"] = without_empty(reader.object("lights"));
+  out["cameras"] = without_empty(reader.object("cameras"));
+  const json path = reader.list("camera_path");
   out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
   out["diagnostic"] = reader.text("diagnostic", "");
   canonical.measure = reader.boolean("measure", false);
@@ -226,9 +257,12 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   canonical.scene = scene.scene;
   out["scene_hash"] = scene.hash;
   out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, camera)).name;
+  out["camera_path"] = json::array();
+  const auto changed = changed_scene(scene.scene, out);  // throws where something is wrong
+  const Camera& own = changed->cameras.at(find_camera(*changed, out["camera"]));
+  out["camera_path"] = scenes::camera_path_document(scenes::camera_path(own, path));
   out["exposure"] =
       std::isnan(exposure) ? std::log2(static_cast<double>(scene.scene->exposure)) : exposure + 0.0;
-  out["lights"] = checked_lights(*scene.scene, lights);
   out["device"] = context.device;
   out["renderer"] = drawing_version();
   identify(canonical);
@@ -252,11 +286,13 @@ CanonicalRequest baseline_of(const CanonicalRequest& request) {
 RenderRequest to_render_request(const CanonicalRequest& canonical) {
   const json& from = canonical.request;
   RenderRequest request;
-  request.scene = canonical.scene;
-  if (!from.at("lights").empty())
-    request.scene = std::make_shared<const Scene>(
-        scenes::with_light_overrides(*canonical.scene, from.at("lights")));
+  request.scene = changed_scene(canonical.scene, from);
   request.camera = from.at("camera");
+  const json& path = from.at("camera_path");
+  if (path.size() > 1)
+    request.earlier_cameras =
+        scenes::camera_path(request.scene->cameras.at(find_camera(*request.scene, request.camera)),
+                            json(path.begin(), path.end() - 1));
   request.technique = canonical.technique.technique;
   request.parameters = canonical.technique.parameters;
   request.width = from.at("width");

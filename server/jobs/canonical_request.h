@@ -26,7 +26,7 @@ struct RequestContext {
 struct CanonicalRequest {
   nlohmann::json request;  ///< every default filled in; the picture is a pure function of this
   std::string id;          ///< 32 hexadecimal digits of SHA-256 of the request's text
-  std::shared_ptr<const Scene> scene;  ///< light overrides not yet applied
+  std::shared_ptr<const Scene> scene;  ///< lights and cameras not yet replaced
   techniques::Resolved technique;
 
   // Not part of the picture's identity.
@@ -38,7 +38,8 @@ struct CanonicalRequest {
 inline constexpr std::uint32_t default_frames = 9;
 
 /// Reads a request as POST /api/v1/renders has it: scene, technique, parameters, width, height,
-/// camera, supersampling, light_samples, exposure, lights, seed, diagnostic, measure, frames.
+/// camera, camera_path, cameras, supersampling, light_samples, exposure, lights, seed, diagnostic,
+/// measure, frames.
 /// Throws bad_value, naming the field and what is allowed, for unknown keys, wrong types and values
 /// out of range; not_found for scene, technique or camera.
 CanonicalRequest read_request(const nlohmann::json& request, const RequestContext& context);
@@ -55,12 +56,16 @@ CanonicalRequest baseline_of(const CanonicalRequest& request);
 RenderRequest to_render_request(const CanonicalRequest& request);
 
 /// A request from names and values as text: URL queries, `--set`. Names that are no key of a
-/// request are parameters; `light.NAME.key` is an entry of `lights`. A name given twice is a bad
-/// value.
+/// request are parameters; `light.NAME.key` is an entry of `lights`, `camera.NAME.key` one of
+/// `cameras`. A name given twice is a bad value.
 nlohmann::json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries);
 
-/// Adds `NAME.key=value` to the `lights` of a request. The value is a number, numbers separated by
-/// commas, JSON, or a word.
-void add_light_override(nlohmann::json& request, const std::string& path, const std::string& value);
+/// What of a scene a request may change key by key.
+enum class Changed { light, camera };
+
+/// Adds `NAME.key=value` to the `lights` or `cameras` of a request. The value is a number, numbers
+/// separated by commas, JSON, or a word.
+void add_override(nlohmann::json& request, Changed what, const std::string& path,
+                  const std::string& value);
 
 }  // namespace penumbra::server

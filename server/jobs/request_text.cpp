@@ -1,4 +1,5 @@
 // Requests written as text: URL queries, --set and --light.
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -14,15 +15,29 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view light_prefix = "light.";
+enum class Kind { text, integer, number, boolean, list };
 
-enum class Kind { text, integer, number, boolean };
+/// The field of a request that holds them, and their name in an example.
+struct Changes {
+  Changed what;
+  std::string one;
+  std::string list;
+  std::string example;
+};
+
+const std::vector<Changes>& all_changes() {
+  static const std::vector<Changes> changes{
+      {Changed::light, "light", "lights", "key.intensity=2"},
+      {Changed::camera, "camera", "cameras", "main.position=1,2,3"}};
+  return changes;
+}
 
 /// Keys of a request that text can set; every other name is a parameter of the technique.
 const std::map<std::string, Kind>& request_keys() {
   static const std::map<std::string, Kind> keys{{"scene", Kind::text},
                                                 {"technique", Kind::text},
                                                 {"camera", Kind::text},
+                                                {"camera_path", Kind::list},
                                                 {"diagnostic", Kind::text},
                                                 {"width", Kind::integer},
                                                 {"height", Kind::integer},
@@ -74,7 +89,7 @@ json list_from(const std::string& text) {
   return list;
 }
 
-json light_value(const std::string& text) {
+json override_value(const std::string& text) {
   if (const auto number = number_from(text)) return *number;
   if (text.find(',') != std::string::npos)
     if (json list = list_from(text); !list.is_null()) return list;
@@ -92,21 +107,22 @@ json& entry_of(json& place, const std::string& key, const std::string& field) {
 
 }  // namespace
 
-void add_light_override(json& request, const std::string& path, const std::string& value) {
-  const std::string field = "lights." + path;
+void add_override(json& request, Changed what, const std::string& path, const std::string& value) {
+  const Changes& changes = all_changes().at(static_cast<std::size_t>(what));
+  const std::string field = changes.list + "." + path;
   const std::size_t dot = path.find('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == path.size())
-    throw bad_value(
-        field, "a light is changed by NAME.key=value, as in key.intensity=2, not \"" + path + "\"");
+    throw bad_value(field, "a " + changes.one + " is changed by NAME.key=value, as in " +
+                               changes.example + ", not \"" + path + "\"");
   // A key may lie deeper: NAME.extent.radius.
-  json* place = &request["lights"][path.substr(0, dot)];
+  json* place = &request[changes.list][path.substr(0, dot)];
   std::size_t begin = dot + 1;
   for (std::size_t end = path.find('.', begin); end != std::string::npos;
        begin = end + 1, end = path.find('.', begin))
     place = &entry_of(*place, path.substr(begin, end - begin), field);
   json& entry = entry_of(*place, path.substr(begin), field);
   if (!entry.is_null()) throw bad_value(field, field + " is given twice");
-  entry = light_value(value);
+  entry = override_value(value);
 }
 
 json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries) {
@@ -114,8 +130,11 @@ json request_from_text(const std::vector<std::pair<std::string, std::string>>& e
   std::set<std::string> seen;
   for (const auto& [name, value] : entries) {
     if (!seen.insert(name).second) throw bad_value(name, name + " is given twice");
-    if (name.starts_with(light_prefix)) {
-      add_light_override(request, name.substr(light_prefix.size()), value);
+    const auto changes =
+        std::find_if(all_changes().begin(), all_changes().end(),
+                     [&](const Changes& entry) { return name.starts_with(entry.one + "."); });
+    if (changes != all_changes().end()) {
+      add_override(request, changes->what, name.substr(changes->one.size() + 1), value);
       continue;
     }
     const auto key = request_keys().find(name);
@@ -129,6 +148,10 @@ json request_from_text(const std::vector<std::pair<std::string, std::string>>& e
       request[name] = *number;
     } else if (key->second == Kind::boolean) {
       request[name] = boolean_from(name, value);
+    } else if (key->second == Kind::list) {
+      json list = json::parse(value, nullptr, false);
+      if (!list.is_array()) throw bad_value(name, name + " must be a list in JSON");
+      request[name] = std::move(list);
     } else {
       request[name] = value;
     }

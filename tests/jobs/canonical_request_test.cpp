@@ -131,6 +131,67 @@ TEST(CanonicalRequest, refuses_names_that_are_not_there) {
               testing::StartsWith("lights"));
 }
 
+TEST(CanonicalRequest, names_the_camera_of_a_path_that_is_wrong) {
+  const auto path_with = [](const json& wrong) {
+    const json good = {{"position", {0, 2, 5}}};
+    return plain_with("camera_path", json::array({good, good, good, wrong}));
+  };
+  EXPECT_EQ(refused_field(path_with({{"field_of_view", 180}})), "camera_path[3].field_of_view");
+  EXPECT_EQ(refused_field(path_with({{"field_of_view", "wide"}})), "camera_path[3].field_of_view");
+  EXPECT_EQ(refused_field(path_with({{"position", {0, 1}}})), "camera_path[3].position");
+  EXPECT_EQ(refused_field(path_with({{"direction", {0, 0, 0}}})), "camera_path[3].direction");
+  EXPECT_EQ(refused_field(path_with({{"direction", {0, 0, 1}}, {"target", {0, 0, 0}}})),
+            "camera_path[3].direction");
+  EXPECT_EQ(refused_field(path_with({{"zoom", 2}})), "camera_path[3].zoom");
+  EXPECT_EQ(refused_field(path_with({{"name", "other"}})), "camera_path[3].name");
+  EXPECT_EQ(refused_field(path_with(5)), "camera_path[3]");
+  EXPECT_EQ(refused_field(plain_with("camera_path", "around")), "camera_path");
+  const json still = json::object();
+  EXPECT_EQ(refused_field(plain_with("camera_path", std::vector<json>(1000, still))), "accepted");
+  EXPECT_EQ(refused_field(plain_with("camera_path", std::vector<json>(1001, still))),
+            "camera_path");
+}
+
+TEST(CanonicalRequest, draws_the_last_camera_of_a_path_after_the_others) {
+  json request = plain();
+  request["camera_path"] = {{{"position", {1, 2, 3}}, {"direction", {0, -2, 0}}},
+                            {{"position", {4, 5, 6}}, {"field_of_view", 33}}};
+  const CanonicalRequest canonical = read_request(request, nowhere);
+  const RenderRequest drawn = to_render_request(canonical);
+  const Camera& before = canonical.scene->cameras.front();
+  const Camera& last = drawn.scene->cameras.front();
+  EXPECT_EQ(last.position, glm::dvec3(4, 5, 6));
+  EXPECT_EQ(last.target, before.target);
+  EXPECT_EQ(last.vertical_fov, 33.0);
+  ASSERT_EQ(drawn.earlier_cameras.size(), 1u);
+  EXPECT_EQ(drawn.earlier_cameras[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(drawn.earlier_cameras[0].target, glm::dvec3(1, 0, 3));
+  EXPECT_EQ(drawn.earlier_cameras[0].vertical_fov, before.vertical_fov);
+
+  // What a path leaves open is filled in; read again, or written otherwise, it is the same picture.
+  EXPECT_EQ(canonical.request["camera_path"][1]["vertical_fov"], 33.0);
+  request["camera_path"] = canonical.request["camera_path"];
+  EXPECT_EQ(read_request(request, nowhere).id, canonical.id);
+  EXPECT_NE(read_request(plain(), nowhere).id, canonical.id);
+
+  // The truth remembers nothing: it is judged from where the path ends.
+  EXPECT_TRUE(to_render_request(reference_of(canonical, nowhere)).earlier_cameras.empty());
+  EXPECT_EQ(to_render_request(reference_of(canonical, nowhere)).scene->cameras.front().position,
+            last.position);
+}
+
+TEST(CanonicalRequest, replaces_keys_of_the_camera_that_it_names) {
+  const std::string name = read_request(plain(), nowhere).request.at("camera");
+  const auto with = [&](const json& keys) { return plain_with("cameras", {{name, keys}}); };
+  const CanonicalRequest canonical = read_request(with({{"field_of_view", 20}}), nowhere);
+  EXPECT_EQ(to_render_request(canonical).scene->cameras.front().vertical_fov, 20.0);
+  EXPECT_EQ(read_request(with({{"field_of_view", 20.0}}), nowhere).id, canonical.id);
+  EXPECT_EQ(read_request(with(json::object()), nowhere).id, read_request(plain(), nowhere).id);
+  EXPECT_EQ(refused_field(with({{"field_of_view", 0}})), "cameras." + name + ".field_of_view");
+  EXPECT_EQ(refused_field(plain_with("cameras", {{"no-such", {{"up", {0, 1, 0}}}}})),
+            "cameras.no-such");
+}
+
 TEST(CanonicalRequest, opens_no_files_for_strangers) {
   EXPECT_EQ(refused_field(plain_with("scene", "/etc/passwd")), "scene");
   EXPECT_EQ(refused_field(plain_with("scene", "../scenes/x.glb")), "scene");
@@ -160,9 +221,12 @@ TEST(RequestFromText, sorts_names_into_keys_parameters_and_lights) {
                                           {"measure", "true"},
                                           {"map_size", "512"},
                                           {"light.key.position", "1,2.5,-3"},
-                                          {"light.key.extent.radius", "0.5"}});
+                                          {"light.key.extent.radius", "0.5"},
+                                          {"camera.main.target", "1,0,0"},
+                                          {"camera_path", R"([{"up": [0, 0, 1]}])"}});
   EXPECT_EQ(request, json::parse(R"({"scene": "boxes", "width": 320, "measure": true,
       "parameters": {"map_size": "512"},
+      "cameras": {"main": {"target": [1.0, 0.0, 0.0]}}, "camera_path": [{"up": [0, 0, 1]}],
       "lights": {"key": {"position": [1.0, 2.5, -3.0], "extent": {"radius": 0.5}}}})"));
 }
 
@@ -181,6 +245,8 @@ TEST(RequestFromText, refuses_what_is_no_number_and_what_is_given_twice) {
   EXPECT_EQ(field({{"width", "1"}, {"width", "2"}}), "width");
   EXPECT_EQ(field({{"bias", "1"}, {"bias", "2"}}), "bias");
   EXPECT_EQ(field({{"light.key", "1"}}), "lights.key");
+  EXPECT_EQ(field({{"camera.main", "1"}}), "cameras.main");
+  EXPECT_EQ(field({{"camera_path", "around"}}), "camera_path");
   for (const char* whole : {"1", "[1]", "a word", "{\"b\": 1}"})
     EXPECT_EQ(field({{"light.key.a", whole}, {"light.key.a.b", "2"}}), "lights.key.a.b") << whole;
 }
