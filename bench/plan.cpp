@@ -9,8 +9,8 @@
 
 #include "bench/program.h"
 #include "renderer/metrics/metrics.h"
+#include "renderer/plan/plan.h"
 #include "renderer/render.h"
-#include "renderer/scene/plan.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
 

@@ -15,11 +15,11 @@
 #include <thread>
 
 #include "bench/program.h"
-#include "renderer/frame/light_points.h"
-#include "renderer/frame/transforms.h"
+#include "renderer/frame/gpu_scene.h"
 #include "renderer/reference/occlusion_mask.h"
 #include "renderer/render.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/scene/light_points.h"
+#include "renderer/scene/transforms.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/device.h"
 #include "renderer/image.h"
 #include "renderer/parameters.h"
 #include "renderer/scene/scene.h"
@@ -32,7 +33,7 @@ constexpr std::uint32_t samples_per_side(std::uint32_t supersampling) {
   return supersampling == 16 ? 4 : supersampling == 4 ? 2 : 1;
 }
 
-/// Rules that drop what a picture does not need (renderer/scene/plan.h). The picture is the same
+/// Rules that drop what a picture does not need (renderer/plan/plan.h). The picture is the same
 /// with and without each; they are here so that what each saves can be measured.
 struct PlanRules {
   bool lights = true;    ///< no light that reaches nothing visible
@@ -92,11 +93,6 @@ struct PassCost {
   std::uint64_t compute_invocations = 0;
 };
 
-struct ResourceCost {
-  std::string name;
-  std::uint64_t bytes = 0;
-};
-
 struct Cost {
   double median_ms = 0.0;  ///< device time of a frame
   double p95_ms = 0.0;
@@ -124,31 +120,6 @@ struct RenderResult {
   Cost cost;
   std::uint64_t non_finite_pixels = 0;  ///< encoded as magenta
   std::vector<std::string> notes;
-};
-
-struct DeviceInfo {
-  std::string name;
-  std::string driver;  ///< name and version
-  std::string type;    ///< cpu, integrated, discrete, virtual, other
-  std::uint32_t index = 0;
-};
-
-/// What a device can hold, bytes unless said otherwise.
-struct DeviceLimits {
-  std::uint64_t memory = 0;          ///< in all
-  std::uint64_t light = 0;           ///< of what is allocated for one light: a heap of the device
-  std::uint64_t storage_buffer = 0;  ///< one of them
-  std::uint32_t image_extent = 0;    ///< texels along an edge
-};
-
-/// All Vulkan devices of this machine, in the loader's order.
-std::vector<DeviceInfo> list_devices();
-
-struct RendererOptions {
-  std::string device;  ///< part of a name, or an index; empty: a GPU if there is one, else lavapipe
-  bool validation = false;  ///< turn the validation layer on; its messages fail the render
-  /// Pictures with more samples are drawn window by window, so that memory for their size is there.
-  std::uint64_t most_window_samples = std::uint64_t{1} << 24;
 };
 
 /// How a long render is followed, and taken up again where it was interrupted.

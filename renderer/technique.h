@@ -53,6 +53,9 @@ struct MemoryNeed {
   std::uint32_t extent = 0;  ///< texels along an edge of an image; 0: a storage buffer
 };
 
+/// Name of the requirement that scenes keep one structure for (GpuScene::derived_memory).
+inline constexpr const char* acceleration_structure_name = "acceleration structure";
+
 /// What a technique needs for one light; the plan allocates this and nothing else.
 struct Requirements {
   std::vector<MemoryNeed>

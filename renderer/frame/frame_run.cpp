@@ -7,8 +7,7 @@
 #include "renderer/frame/host_copy.h"
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/scene_pass.h"
-#include "renderer/reference/intersector.h"
-#include "renderer/scene/memory_check.h"
+#include "renderer/plan/memory_check.h"
 
 namespace penumbra {
 namespace {
@@ -292,8 +291,7 @@ std::vector<ResourceCost> FrameRun::technique_memory() const {
         memory.add(resource.name, resource.bytes);
   // What lights require together is there once, however many they are.
   if (any(lights_, [](const Requirements& needs) { return needs.acceleration_structure; }))
-    for (const ResourceCost& part :
-         reference::Intersector::of(state_.device, setup_.scene).memory())
+    for (const ResourceCost& part : setup_.scene.derived_memory(acceleration_structure_name))
       memory.add(part.name, part.bytes);
   if (any(lights_, [](const Requirements& needs) { return needs.adjacency; }))
     memory.add("adjacency", setup_.scene.adjacency(state_.device).indices.size());

@@ -3,9 +3,9 @@
 #include <span>
 
 #include "renderer/frame/geometry_buffer.h"
-#include "renderer/frame/light_points.h"
-#include "renderer/frame/transforms.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
+#include "renderer/scene/light_points.h"
+#include "renderer/scene/transforms.h"
 #include "renderer/technique.h"
 #include "renderer/vulkan/commands.h"
 

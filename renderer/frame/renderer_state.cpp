@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "renderer/frame/frame_run.h"
-#include "renderer/shadow_maps/layout.h"
 
 namespace penumbra {
 
+// By the build: the files of shaders, and those that it generates.
 std::span<const EmbeddedFile> embedded_renderer_shaders();
+std::span<const EmbeddedFile> generated_renderer_shaders();
 
 namespace {
 
@@ -38,7 +39,7 @@ Renderer::State::State(const RendererOptions& options)
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vulkan::MemoryKind::readback),
       most_window_samples(options.most_window_samples) {
   shaders.add(embedded_renderer_shaders());
-  shaders.add("renderer/shadow_maps/chosen_layout.glsl", shadow_maps::chosen_layout_glsl());
+  shaders.add(generated_renderer_shaders());
 }
 
 const std::vector<Bounds>& Renderer::State::boxes_of(const std::shared_ptr<const Scene>& scene) {

@@ -2,8 +2,8 @@
 
 #include <list>
 
+#include "renderer/frame/gpu_scene.h"
 #include "renderer/render.h"
-#include "renderer/scene/gpu_scene.h"
 #include "renderer/vulkan/commands.h"
 
 namespace penumbra {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "renderer/frame/light_points.h"
+#include "renderer/scene/light_points.h"
 
 namespace penumbra {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/frame/geometry_buffer.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 #include "renderer/vulkan/commands.h"
 
 namespace penumbra {

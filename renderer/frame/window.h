@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/frame/transforms.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra {
 

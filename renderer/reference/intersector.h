@@ -1,13 +1,15 @@
 #pragma once
 
+#include "renderer/frame/gpu_scene.h"
 #include "renderer/reference/hierarchy.h"
-#include "renderer/scene/gpu_scene.h"
 
 namespace penumbra::reference {
 
 /// The casters of a scene on the device, ready to be walked: built once per scene and kept with it.
 class Intersector {
  public:
+  static constexpr const char* requirement = acceleration_structure_name;
+
   Intersector(vulkan::Device& device, const GpuScene& scene);
 
   /// The one of this scene, built when first asked for. Its memory is charged to a technique by

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "renderer/error.h"
-#include "renderer/scene/caster_defects.h"
+#include "renderer/frame/caster_defects.h"
 #include "renderer/shadow_maps/light_view.h"
 
 namespace penumbra::shadow_maps {

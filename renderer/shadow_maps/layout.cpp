@@ -31,15 +31,4 @@ const Layout& chosen_layout(const ParameterValues& parameters) {
   throw std::logic_error("parameter layout names none: " + id);
 }
 
-std::string chosen_layout_glsl() {
-  std::string text;
-  for (const Layout& layout : layouts()) {
-    std::string name = layout.id;
-    std::replace(name.begin(), name.end(), '-', '_');
-    text += "#ifdef variant_layout_" + name + "\n#include \"renderer/shadow_maps/layouts/" +
-            layout.id + ".glsl\"\n#endif\n";
-  }
-  return text;
-}
-
 }  // namespace penumbra::shadow_maps

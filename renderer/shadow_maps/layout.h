@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "renderer/frame/light_points.h"
-#include "renderer/frame/transforms.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
+#include "renderer/scene/light_points.h"
+#include "renderer/scene/transforms.h"
 #include "renderer/shaders/shader_types.h"
 #include "renderer/technique.h"
 
@@ -54,8 +54,5 @@ const std::vector<Layout>& layouts();
 
 /// The one that parameter `layout` names.
 const Layout& chosen_layout(const ParameterValues& parameters);
-
-/// Text of renderer/shadow_maps/chosen_layout.glsl: includes the GLSL of the chosen layout.
-std::string chosen_layout_glsl();
 
 }  // namespace penumbra::shadow_maps

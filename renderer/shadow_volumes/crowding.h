@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <set>
 
-#include "renderer/frame/light_points.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
+#include "renderer/scene/light_points.h"
 
 namespace penumbra::shadow_volumes {
 

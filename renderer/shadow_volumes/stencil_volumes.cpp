@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "renderer/scene/caster_defects.h"
+#include "renderer/frame/caster_defects.h"
 #include "renderer/shadow_volumes/hidden_casters.h"
 #include "renderer/shadow_volumes/near_plane.h"
 #include "renderer/shadow_volumes/volume_draws.h"

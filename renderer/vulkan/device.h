@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/render.h"
+#include "renderer/device.h"
 
 /// A thin layer over the Vulkan C API: owners, memory that is accounted for, shaders with
 /// reflection, recording with timestamps. All images stay in VK_IMAGE_LAYOUT_GENERAL; passes are

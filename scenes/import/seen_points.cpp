@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "renderer/frame/transforms.h"
 #include "renderer/scene/coverage.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra::scenes {
 namespace {

@@ -6,7 +6,7 @@
 #include "renderer/error.h"
 #include "server/cli/progress.h"
 #include "server/cli/session.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "study/power.h"
 
 namespace penumbra::server::cli {

@@ -4,8 +4,8 @@
 #include "scenes/export.h"
 #include "scenes/library.h"
 #include "server/cli/session.h"
+#include "server/files/durable_file.h"
 #include "server/http/scene_upload.h"
-#include "server/jobs/durable_file.h"
 
 namespace penumbra::server::cli {
 namespace {

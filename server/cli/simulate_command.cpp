@@ -6,7 +6,7 @@
 #include "server/cli/session.h"
 #include "server/cli/study_client.h"
 #include "server/cli/written_file.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "study/simulate.h"
 
 namespace penumbra::server::cli {

@@ -7,7 +7,7 @@
 #include "scenes/json_text.h"
 #include "server/cli/session.h"
 #include "server/cli/written_file.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "study/csv.h"
 #include "study/figures.h"
 #include "study/report/html.h"

@@ -4,10 +4,10 @@
 #include <sys/stat.h>
 
 #include "renderer/error.h"
+#include "server/files/digest.h"
+#include "server/files/durable_file.h"
 #include "server/http/png.h"
 #include "server/http/webp.h"
-#include "server/jobs/digest.h"
-#include "server/jobs/durable_file.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/folder_files.h"
 

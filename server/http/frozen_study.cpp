@@ -1,7 +1,7 @@
 #include "server/http/frozen_study.h"
 
+#include "server/files/digest.h"
 #include "server/http/reply.h"
-#include "server/jobs/digest.h"
 
 namespace penumbra::server::http {
 namespace {

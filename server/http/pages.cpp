@@ -3,11 +3,11 @@
 #include <map>
 #include <optional>
 
+#include "server/files/digest.h"
 #include "server/http/documents.h"
 #include "server/http/guard.h"
 #include "server/http/reply.h"
 #include "server/http/service.h"
-#include "server/jobs/digest.h"
 
 namespace penumbra::server::http {
 namespace {

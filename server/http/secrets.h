@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 
 namespace penumbra::server::http {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "scenes/json_text.h"
-#include "server/jobs/digest.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/digest.h"
+#include "server/files/durable_file.h"
 
 namespace penumbra::server {
 namespace fs = std::filesystem;

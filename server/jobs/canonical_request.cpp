@@ -10,7 +10,7 @@
 #include "renderer/technique.h"
 #include "scenes/json_text.h"
 #include "scenes/library.h"
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 #include "server/jobs/drawing_version.h"
 #include "server/jobs/request_scene.h"
 #include "techniques/parameter_schema.h"

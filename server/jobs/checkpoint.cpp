@@ -4,8 +4,8 @@
 
 #include <system_error>
 
-#include "server/jobs/digest.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/digest.h"
+#include "server/files/durable_file.h"
 
 namespace penumbra::server {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "renderer/error.h"
 #include "scenes/json_text.h"
+#include "server/files/durable_file.h"
 #include "server/jobs/child_process.h"
-#include "server/jobs/durable_file.h"
 
 namespace penumbra::server {
 namespace {

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "renderer/error.h"
-#include "renderer/scene/memory_check.h"
+#include "renderer/plan/memory_check.h"
 #include "renderer/technique.h"
 #include "server/jobs/task.h"
 

@@ -1,7 +1,7 @@
 #include "server/jobs/plan_document.h"
 
 #include "renderer/error.h"
-#include "renderer/scene/plan.h"
+#include "renderer/plan/plan.h"
 
 namespace penumbra::server {
 namespace {

@@ -8,7 +8,7 @@ namespace penumbra::server {
 
 /// What a render would allocate, upload and draw, and why, without a device: the request's scene,
 /// technique and parameters; `supported` with `reason`; `lights` with the technique's needs of
-/// each; `lines` (renderer/scene/plan.h); and `bytes` of the scene `kept` and `dropped`.
+/// each; `lines` (renderer/plan/plan.h); and `bytes` of the scene `kept` and `dropped`.
 nlohmann::json plan_document(const CanonicalRequest& request);
 
 }  // namespace penumbra::server

@@ -10,7 +10,7 @@
 
 #include "renderer/error.h"
 #include "scenes/library.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 
 namespace penumbra::server {
 namespace fs = std::filesystem;

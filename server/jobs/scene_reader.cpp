@@ -10,8 +10,8 @@
 #include "renderer/error.h"
 #include "scenes/library.h"
 #include "scenes/picture_io.h"
+#include "server/files/durable_file.h"
 #include "server/jobs/child_process.h"
-#include "server/jobs/durable_file.h"
 #include "server/jobs/memory_budget.h"
 
 namespace penumbra::server {

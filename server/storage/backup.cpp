@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "renderer/error.h"
-#include "server/jobs/digest.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/digest.h"
+#include "server/files/durable_file.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/examination.h"
 #include "server/storage/folder_files.h"

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "renderer/error.h"
-#include "server/jobs/digest.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/digest.h"
+#include "server/files/durable_file.h"
 #include "server/storage/data_folder.h"
 
 namespace penumbra::server::storage {

@@ -3,7 +3,7 @@
 #include <future>
 
 #include "renderer/error.h"
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 #include "server/storage/participant_rows.h"
 
 namespace penumbra::server::storage {

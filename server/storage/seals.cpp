@@ -2,7 +2,7 @@
 
 #include <sqlite3.h>
 
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 #include "server/storage/data_folder.h"
 
 namespace penumbra::server::storage {

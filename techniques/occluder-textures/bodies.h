@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 namespace penumbra::techniques::occluder_textures {
 

@@ -1,6 +1,6 @@
 #include "renderer/error.h"
+#include "renderer/frame/caster_defects.h"
 #include "renderer/frame/prepare_context.h"
-#include "renderer/scene/caster_defects.h"
 #include "techniques/occluder-textures/planes.h"
 
 namespace penumbra::techniques {

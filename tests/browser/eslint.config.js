@@ -24,6 +24,8 @@ const shared = {
 
 export default [
   { ...shared, files: ["**/web/**/*.js"], languageOptions: { ...shared.languageOptions, globals: globals.browser } },
+  { ...shared, files: ["**/tests/style/*.mjs"],
+    languageOptions: { ...shared.languageOptions, globals: globals.node } },
   // Tests hand functions to the page, so that they know both worlds.
   { ...shared, files: ["**/tests/browser/*.js"],
     languageOptions: { ...shared.languageOptions, globals: { ...globals.browser, ...globals.node } } },

@@ -11,7 +11,7 @@
 #include "renderer/image.h"
 #include "scenes/library.h"
 #include "scenes/picture_io.h"
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/studies.h"
 #include "techniques/registry.h"

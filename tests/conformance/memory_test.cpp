@@ -3,8 +3,8 @@
 
 #include "renderer/error.h"
 #include "renderer/frame/prepare_context.h"
+#include "renderer/plan/memory_check.h"
 #include "renderer/render.h"
-#include "renderer/scene/memory_check.h"
 #include "techniques/presets.h"
 #include "techniques/registry.h"
 #include "tests/conformance/scenes.h"

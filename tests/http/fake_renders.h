@@ -9,7 +9,7 @@
 #include <string>
 
 #include "renderer/error.h"
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 #include "server/jobs/render_service.h"
 #include "tests/http/png_files.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "tests/http/running_server.h"
 
 namespace penumbra::server::http {

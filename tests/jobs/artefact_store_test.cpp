@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 #include "tests/jobs/temporary_folder.h"
 
 namespace penumbra::server {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "renderer/error.h"
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 #include "server/jobs/drawing_version.h"
 
 namespace penumbra::server {

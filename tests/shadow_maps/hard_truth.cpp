@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "renderer/frame/transforms.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra::tests {
 namespace {

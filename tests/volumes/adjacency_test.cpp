@@ -1,10 +1,10 @@
 // Neighbourhoods of triangles, judged by comparing every side with every other.
-#include "renderer/scene/adjacency.h"
+#include "renderer/frame/adjacency.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 namespace penumbra {
 namespace {

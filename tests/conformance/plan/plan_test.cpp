@@ -1,13 +1,13 @@
-#include "renderer/scene/plan.h"
+#include "renderer/plan/plan.h"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "renderer/error.h"
-#include "renderer/frame/light_points.h"
-#include "renderer/frame/transforms.h"
 #include "renderer/metrics/metrics.h"
+#include "renderer/scene/light_points.h"
+#include "renderer/scene/transforms.h"
 #include "scenes/library.h"
 #include "techniques/registry.h"
 #include "tests/conformance/plan/scattered.h"

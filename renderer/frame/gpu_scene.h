@@ -9,8 +9,8 @@
 #include <typeindex>
 #include <vector>
 
-#include "renderer/scene/adjacency.h"
-#include "renderer/scene/plan.h"
+#include "renderer/frame/adjacency.h"
+#include "renderer/plan/plan.h"
 #include "renderer/scene/scene.h"
 #include "renderer/vulkan/commands.h"
 
@@ -54,9 +54,6 @@ class GpuScene {
   GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
            std::vector<InstanceUse> uses, std::vector<bool> textures, const SceneFrame& frame);
 
-  /// Of a vertex: its position, and its normal, texture coordinates and colour.
-  static constexpr std::uint64_t vertex_bytes = 12 + 24;
-
   const Scene& scene() const { return *scene_; }
   /// Whether this is what such a plan needs, no more and no less.
   bool serves(const std::shared_ptr<const Scene>& scene, const std::vector<InstanceUse>& uses,
@@ -92,17 +89,27 @@ class GpuScene {
   /// White where the material has no texture.
   const vulkan::Image& texture_of(std::uint32_t material) const;
 
-  /// Built and uploaded when first asked for, then kept with the scene. Charged to nobody here: who
-  /// requires it pays.
+  /// Built and uploaded when first asked for, then kept with the scene. Not charged here, but to
+  /// the technique that requires it.
   const SceneAdjacency& adjacency(vulkan::Device& device) const;
 
-  /// Something else derived from the scene alone, by its type: made by `make`, which answers a
-  /// shared_ptr<const T>, when first asked for, and kept with the scene.
+  /// Something else derived from the scene alone, by its type: made by `make`, which returns a
+  /// shared_ptr<const T>, when first asked for, and kept with the scene. Where T names a
+  /// `requirement` of a technique, derived_memory tells what T::memory() does.
   template <class T, class Make>
   const T& derived(const Make& make) const {
     std::shared_ptr<const void>& slot = derived_[typeid(T)];
-    if (!slot) slot = std::shared_ptr<const T>(make());
+    if (!slot) {
+      const auto made = std::shared_ptr<const T>(make());
+      if constexpr (requires { T::requirement; }) derived_memory_[T::requirement] = made->memory();
+      slot = made;
+    }
     return *static_cast<const T*>(slot.get());
+  }
+  /// Device memory of what was derived for a requirement; nothing before it is made.
+  std::vector<ResourceCost> derived_memory(const std::string& requirement) const {
+    const auto found = derived_memory_.find(requirement);
+    return found == derived_memory_.end() ? std::vector<ResourceCost>{} : found->second;
   }
 
  private:
@@ -128,6 +135,7 @@ class GpuScene {
   vulkan::Buffer positions_, surfaces_, indices_, materials_;
   std::vector<vulkan::Image> textures_;  ///< one per scene texture, empty where unused, then white
   mutable std::map<std::type_index, std::shared_ptr<const void>> derived_;
+  mutable std::map<std::string, std::vector<ResourceCost>> derived_memory_;  ///< by requirement
   mutable std::unique_ptr<SceneAdjacency> adjacency_;
 };
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 namespace penumbra {
 namespace {

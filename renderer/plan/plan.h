@@ -9,6 +9,9 @@
 
 namespace penumbra {
 
+/// Of a vertex on the device: its position, and its normal, texture coordinates and colour.
+inline constexpr std::uint64_t vertex_bytes = 12 + 24;
+
 /// What of a scene takes part in a render.
 struct InstanceUse {
   bool visible = true;  ///< its surfaces are drawn

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 /// What casters are that techniques may not bear; for notes.
 namespace penumbra {

@@ -1,4 +1,4 @@
-#include "renderer/scene/memory_check.h"
+#include "renderer/plan/memory_check.h"
 
 #include "renderer/error.h"
 

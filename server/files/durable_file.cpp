@@ -1,4 +1,4 @@
-#include "server/jobs/durable_file.h"
+#include "server/files/durable_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

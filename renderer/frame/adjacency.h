@@ -9,7 +9,7 @@
 
 namespace penumbra {
 
-struct DrawRange;  // renderer/scene/gpu_scene.h
+struct DrawRange;  // renderer/frame/gpu_scene.h
 
 /// Triangles of one instance that volumes are made of in one way: a range of the adjacency indices.
 struct AdjacencyGroup {

@@ -1,4 +1,4 @@
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 #include <algorithm>
 #include <bit>

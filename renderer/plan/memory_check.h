@@ -1,7 +1,7 @@
 #pragma once
 
+#include "renderer/plan/plan.h"
 #include "renderer/render.h"
-#include "renderer/scene/plan.h"
 
 namespace penumbra {
 

@@ -1,4 +1,4 @@
-#include "server/jobs/digest.h"
+#include "server/files/digest.h"
 
 #include <openssl/evp.h>
 #include <openssl/hmac.h>

@@ -1,4 +1,4 @@
-#include "renderer/scene/caster_defects.h"
+#include "renderer/frame/caster_defects.h"
 
 #include <algorithm>
 #include <set>

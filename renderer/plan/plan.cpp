@@ -1,14 +1,13 @@
-#include "renderer/scene/plan.h"
+#include "renderer/plan/plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "renderer/frame/light_points.h"
-#include "renderer/frame/transforms.h"
 #include "renderer/scene/convex_clip.h"
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/scene/light_points.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra {
 namespace {
@@ -139,8 +138,7 @@ class LightReach {
 };
 
 std::uint64_t geometry_bytes(const Mesh& mesh) {
-  return mesh.positions.size() * GpuScene::vertex_bytes +
-         mesh.indices.size() * sizeof(std::uint32_t);
+  return mesh.positions.size() * vertex_bytes + mesh.indices.size() * sizeof(std::uint32_t);
 }
 
 std::uint64_t texture_bytes(const Texture& texture) {

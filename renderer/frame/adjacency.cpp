@@ -1,4 +1,4 @@
-#include "renderer/scene/adjacency.h"
+#include "renderer/frame/adjacency.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "renderer/scene/gpu_scene.h"
+#include "renderer/frame/gpu_scene.h"
 
 namespace penumbra {
 namespace {

@@ -1,4 +1,4 @@
-#include "renderer/frame/transforms.h"
+#include "renderer/scene/transforms.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "renderer/frame/light_points.h"
+#include "renderer/scene/light_points.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <random>
 
-#include "renderer/frame/transforms.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra {
 namespace {
