@@ -138,6 +138,66 @@ const T& typed(const ParameterValues& values, const std::string& name) {
 
 }  // namespace
 
+Parameter Parameter::log() const {
+  Parameter copy = *this;
+  copy.scale = ParameterScale::logarithmic;
+  return copy;
+}
+
+Parameter Parameter::in(const std::string& unit_) const {
+  Parameter copy = *this;
+  copy.unit = unit_;
+  return copy;
+}
+
+Parameter Parameter::compiled() const {
+  Parameter copy = *this;
+  copy.variant = true;
+  return copy;
+}
+
+Parameter integer(const std::string& name, std::int64_t default_value, const Range& range,
+                  const std::string& meaning) {
+  return {.name = name,
+          .type = ParameterType::integer,
+          .default_value = default_value,
+          .minimum = range.minimum,
+          .maximum = range.maximum,
+          .meaning = meaning};
+}
+
+Parameter real(const std::string& name, double default_value, const Range& range,
+               const std::string& meaning) {
+  return {.name = name,
+          .type = ParameterType::real,
+          .default_value = default_value,
+          .minimum = range.minimum,
+          .maximum = range.maximum,
+          .meaning = meaning};
+}
+
+Parameter boolean(const std::string& name, bool default_value, const std::string& meaning) {
+  return {.name = name,
+          .type = ParameterType::boolean,
+          .default_value = default_value,
+          .meaning = meaning};
+}
+
+Parameter choice(const std::string& name, const std::string& default_value,
+                 std::vector<std::string> choices, const std::string& meaning) {
+  return {.name = name,
+          .type = ParameterType::choice,
+          .default_value = default_value,
+          .choices = std::move(choices),
+          .meaning = meaning};
+}
+
+std::vector<Parameter> operator+(std::vector<Parameter> first,
+                                 const std::vector<Parameter>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 std::string to_text(const ParameterValue& value) {
   if (const bool* boolean = std::get_if<bool>(&value)) return *boolean ? "true" : "false";
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);

@@ -35,7 +35,31 @@ struct Parameter {
   std::string meaning;
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
   std::optional<Choice> only_with = {};  ///< without this choice it changes nothing
+
+  // For declarations in one line: integer("size", 512, {1, 16384}, "Of the
+  // map.").log().in("texels")
+  Parameter log() const;                         ///< scale is logarithmic
+  Parameter in(const std::string& unit_) const;  ///< unit
+  Parameter compiled() const;                    ///< variant
 };
+
+/// What a number may be, ends included.
+struct Range {
+  double minimum = 0.0;
+  double maximum = 1.0;
+};
+
+Parameter integer(const std::string& name, std::int64_t default_value, const Range& range,
+                  const std::string& meaning);
+Parameter real(const std::string& name, double default_value, const Range& range,
+               const std::string& meaning);
+Parameter boolean(const std::string& name, bool default_value, const std::string& meaning);
+Parameter choice(const std::string& name, const std::string& default_value,
+                 std::vector<std::string> choices, const std::string& meaning);
+
+/// Both lists, in order.
+std::vector<Parameter> operator+(std::vector<Parameter> first,
+                                 const std::vector<Parameter>& second);
 
 /// The value as people write it: "true", "3", "0.25" (shortest that reads back equal), "linear".
 std::string to_text(const ParameterValue& value);

@@ -105,16 +105,23 @@ const Diagnostic* find_diagnostic(const TechniqueDescription& technique, const s
 
 /// Everything the rest of the program knows of a technique. Built by `describe_<folder>()`.
 struct TechniqueDescription {
-  std::string id;      ///< the folder's name
+  std::string id;      ///< the folder's name; filled in by the registry
   std::string label;   ///< abbreviation in reports, as the source has it
   std::string title;   ///< a person's words
   std::string family;  ///< none, planar, map, volume, hybrid, receiver, traced, truth
   std::string source;  ///< paper or thesis section
   std::vector<Parameter> parameters;
   std::vector<Diagnostic> diagnostics;  ///< pictures by name, from `vec4 draw_diagnostic_<name>`
-  std::string shader;                   ///< path of the GLSL that defines calculate_shadow
+  std::string shader;  ///< path of the GLSL that defines calculate_shadow; default: shadow.glsl
+                       ///< in the folder
   std::span<const EmbeddedFile> files;  ///< all techniques' shaders; filled in by the registry
   std::function<std::unique_ptr<Technique>()> create;
 };
+
+/// What most descriptions have as `create`.
+template <class T>
+std::unique_ptr<Technique> create_technique() {
+  return std::make_unique<T>();
+}
 
 }  // namespace penumbra

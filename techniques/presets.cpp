@@ -49,6 +49,8 @@ void check_conditions(const TechniqueDescription& description) {
 }
 
 void finish_description(TechniqueDescription& description) {
+  if (description.shader.empty())
+    description.shader = "techniques/" + description.id + "/shadow.glsl";
   if (!description.create)
     throw std::logic_error("technique " + description.id + " cannot be created");
   const auto& common = common_parameters();

@@ -8,10 +8,10 @@
 
 namespace penumbra::techniques {
 
-/// Puts folders in order of id, appends the common parameters to each, and checks what nobody else
-/// would: unique ids and parameter names, sound ranges, defaults that are allowed values, a
-/// factory. Throws std::logic_error naming the technique at fault: a defect of the program, not of
-/// its input.
+/// Puts folders in order of id, appends the common parameters to each, fills in the usual shader
+/// and checks what nothing else does: unique ids and parameter names, sound ranges, defaults that
+/// are allowed values, a factory. Throws std::logic_error naming the technique at fault: a defect
+/// of the program, not of its input.
 std::vector<TechniqueDescription> finish_descriptions(std::vector<TechniqueDescription> list);
 
 /// Reads techniques/<id>/presets.json of every technique: an array of objects with "id", "label",

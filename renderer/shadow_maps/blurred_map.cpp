@@ -7,80 +7,37 @@ namespace penumbra::shadow_maps {
 
 std::vector<Parameter> blur_parameters() {
   std::vector<Parameter> list;
-  Parameter blur;
-  blur.name = "blur";
-  blur.type = ParameterType::integer;
-  blur.default_value = std::int64_t{2};
-  blur.minimum = 0;
-  blur.maximum = 16;
-  blur.unit = "texels";
-  blur.meaning =
-      "Radius of the filter that is run over the map; it reads 2 blur + 1 texels a side.";
-  blur.variant = true;
-  list.push_back(blur);
-
-  Parameter filter;
-  filter.name = "blur_filter";
-  filter.type = ParameterType::choice;
-  filter.choices = {"box", "gauss"};
-  filter.default_value = std::string("gauss");
-  filter.meaning =
-      "Weights of that filter. box: equal. gauss: a bell of which two standard deviations fit in.";
-  filter.variant = true;
-  list.push_back(filter);
-
-  Parameter mips;
-  mips.name = "mips";
-  mips.type = ParameterType::boolean;
-  mips.default_value = true;
-  mips.meaning = "Read means over more texels where a pixel covers more.";
-  list.push_back(mips);
-
-  Parameter anisotropic;
-  anisotropic.name = "anisotropic";
-  anisotropic.type = ParameterType::boolean;
-  anisotropic.default_value = false;
-  anisotropic.meaning =
-      "Read up to 16 means along the direction in which a pixel covers most, instead of one.";
-  list.push_back(anisotropic);
+  list.push_back(
+      integer("blur", 2, {0, 16},
+              "Radius of the filter that is run over the map; it reads 2 blur + 1 texels a side.")
+          .in("texels")
+          .compiled());
+  list.push_back(choice("blur_filter", "gauss", {"box", "gauss"},
+                        "Weights of that filter. box: equal. gauss: a bell of which two standard "
+                        "deviations fit in.")
+                     .compiled());
+  list.push_back(boolean("mips", true, "Read means over more texels where a pixel covers more."));
+  list.push_back(boolean(
+      "anisotropic", false,
+      "Read up to 16 means along the direction in which a pixel covers most, instead of one."));
   return list;
 }
 
 Parameter bleeding_parameter(double default_value) {
-  Parameter reduction;
-  reduction.name = "bleeding_reduction";
-  reduction.default_value = default_value;
-  reduction.minimum = 0.0;
-  reduction.maximum = 0.99;
-  reduction.meaning =
-      "Light below this becomes shadow and the rest is stretched smoothly: less bleeding, darker "
-      "penumbrae. 0 leaves the bound as it is.";
-  return reduction;
+  return real("bleeding_reduction", default_value, {0.0, 0.99},
+              "Light below this becomes shadow and the rest is stretched smoothly: less bleeding, "
+              "darker penumbrae. 0 leaves the bound as it is.");
 }
 
 Parameter deviation_parameter() {
-  Parameter deviation;
-  deviation.name = "minimum_deviation";
-  deviation.default_value = 0.0001;
-  deviation.minimum = 0.0;
-  deviation.maximum = 1.0;
-  deviation.unit = "of range";
-  deviation.meaning =
-      "Depths are taken to scatter at least by this share of the map's range: hides rounding of "
-      "the "
-      "moments.";
-  return deviation;
+  return real("minimum_deviation", 0.0001, {0.0, 1.0},
+              "Depths are taken to scatter at least by this share of the map's range: hides "
+              "rounding of the moments.")
+      .in("of range");
 }
 
 Parameter precision_parameter(const std::string& meaning) {
-  Parameter precision;
-  precision.name = "precision";
-  precision.type = ParameterType::choice;
-  precision.choices = {"fp16", "fp32"};
-  precision.default_value = std::string("fp32");
-  precision.meaning = meaning;
-  precision.variant = true;
-  return precision;
+  return choice("precision", "fp32", {"fp16", "fp32"}, meaning).compiled();
 }
 
 Diagnostic mip_level_diagnostic() {

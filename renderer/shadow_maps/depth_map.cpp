@@ -36,103 +36,52 @@ std::vector<Parameter> layout_parameters() {
 
 std::vector<Parameter> map_parameters() {
   std::vector<Parameter> list;
-  Parameter map_size;
-  map_size.name = "map_size";
-  map_size.type = ParameterType::integer;
-  map_size.default_value = std::int64_t{512};
-  map_size.minimum = 1;
-  map_size.maximum = 16384;
-  map_size.scale = ParameterScale::logarithmic;
-  map_size.unit = "texels";
-  map_size.meaning = "Width and height of the shadow map.";
-  list.push_back(map_size);
-
+  list.push_back(integer("map_size", 512, {1, 16384}, "Width and height of the shadow map.")
+                     .log()
+                     .in("texels"));
   for (const Parameter& parameter : layout_parameters()) list.push_back(parameter);
 
-  Parameter strategy;
-  strategy.name = "bias_strategy";
-  strategy.type = ParameterType::choice;
-  strategy.choices = {"constant",       "slope",      "normal-offset",
-                      "receiver-plane", "back-faces", "second-depth",
-                      "midpoint",       "dual-depth", "auto"};
-  strategy.default_value = std::string("receiver-plane");
-  strategy.meaning =
-      "How self-shadowing is prevented. constant: depth is moved away from the light, for facets "
-      "at "
-      "45 degrees. slope: by what each caster's facet spans over the kernel. normal-offset: the "
-      "receiver is moved along its normal. receiver-plane: every texel is compared with the "
-      "receiver's plane at the texel's own place. back-faces: only faces turned away from the "
-      "light "
-      "are drawn. second-depth: the second surface from the light is. midpoint: the middle between "
-      "the "
-      "first two. dual-depth: that, but never far behind the first. auto: receiver-plane, "
-      "and the map moved by as much as that grants, never past the middle.";
-  strategy.variant = true;
-  list.push_back(strategy);
-
-  Parameter bias;
-  bias.name = "bias";
-  bias.type = ParameterType::real;
-  bias.default_value = 0.0;
-  bias.minimum = 0.0;
-  bias.maximum = 1000.0;
-  bias.unit = "m";
-  bias.meaning =
-      "Distance along the light's axis granted to every comparison, beside what the strategy "
-      "finds.";
-  list.push_back(bias);
-
-  Parameter slope_scale;
-  slope_scale.name = "slope_scale";
-  slope_scale.type = ParameterType::real;
-  slope_scale.default_value = 1.0;
-  slope_scale.minimum = 0.0;
-  slope_scale.maximum = 16.0;
-  slope_scale.meaning =
-      "Factor of what the strategy finds from texel size, kernel, slope and rounding; 1 is enough, "
-      "0 leaves only bias.";
-  list.push_back(slope_scale);
+  list.push_back(
+      choice("bias_strategy", "receiver-plane",
+             {"constant", "slope", "normal-offset", "receiver-plane", "back-faces", "second-depth",
+              "midpoint", "dual-depth", "auto"},
+             "How self-shadowing is prevented. constant: depth is moved away from the light, for "
+             "facets at 45 degrees. slope: by what each caster's facet spans over the kernel. "
+             "normal-offset: the receiver is moved along its normal. receiver-plane: every texel "
+             "is compared with the receiver's plane at the texel's own place. back-faces: only "
+             "faces turned away from the light are drawn. second-depth: the second surface from "
+             "the light is. midpoint: the middle between the first two. dual-depth: that, but "
+             "never far behind the first. auto: receiver-plane, and the map moved by as much as "
+             "that grants, never past the middle.")
+          .compiled());
+  list.push_back(real("bias", 0.0, {0.0, 1000.0},
+                      "Distance along the light's axis granted to every comparison, beside what "
+                      "the strategy finds.")
+                     .in("m"));
+  list.push_back(real("slope_scale", 1.0, {0.0, 16.0},
+                      "Factor of what the strategy finds from texel size, kernel, slope and "
+                      "rounding; 1 is enough, 0 leaves only bias."));
   return list;
 }
 
 namespace {
 
 Parameter range_parameter(const char* name, const char* meaning) {
-  Parameter range;
-  range.name = name;
-  range.default_value = 0.0;
-  range.minimum = 0.0;
-  range.maximum = 1e6;
-  range.unit = "m";
-  range.meaning = meaning;
-  return range;
+  return real(name, 0.0, {0.0, 1e6}, meaning).in("m");
 }
 
 }  // namespace
 
 std::vector<Parameter> comparing_map_parameters() {
   std::vector<Parameter> list = map_parameters();
-  Parameter depth;
-  depth.name = "depth";
-  depth.type = ParameterType::choice;
-  depth.choices = {"linear", "hyperbolic"};
-  depth.default_value = std::string("linear");
-  depth.meaning =
-      "How distances share the map's numbers. linear: evenly. hyperbolic: evenly in 1/z, as a "
-      "projection has it, so that few are left far from the light; directional lights have no "
-      "such.";
-  depth.variant = true;
-  list.push_back(depth);
-
-  Parameter bits;
-  bits.name = "depth_bits";
-  bits.type = ParameterType::choice;
-  bits.choices = {"32", "16"};
-  bits.default_value = std::string("32");
-  bits.meaning = "What a depth is kept in: a float of 32 bits, or one of 65,536 steps.";
-  bits.variant = true;
-  list.push_back(bits);
-
+  list.push_back(choice("depth", "linear", {"linear", "hyperbolic"},
+                        "How distances share the map's numbers. linear: evenly. hyperbolic: evenly "
+                        "in 1/z, as a projection has it, so that few are left far from the light; "
+                        "directional lights have no such.")
+                     .compiled());
+  list.push_back(choice("depth_bits", "32", {"32", "16"},
+                        "What a depth is kept in: a float of 32 bits, or one of 65,536 steps.")
+                     .compiled());
   list.push_back(range_parameter(
       "near",
       "Distance along the light's axis at which the map's range begins, for a directional light "

@@ -52,4 +52,22 @@ class DepthMap {
   vulkan::BufferRange constants_;
 };
 
+/// A technique that draws a depth map for every light; what it is for is said by its GLSL.
+class MapTechnique : public Technique {
+ public:
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    DepthMap::require(input, needs);
+  }
+  void prepare(PrepareContext& context) override {
+    map_.draw(context, map_use(context.input.parameters));
+  }
+  void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
+
+ protected:
+  /// How the GLSL reads the map; by default one comparison at the receiver's place.
+  virtual MapUse map_use(const ParameterValues&) const { return {}; }
+
+  DepthMap map_;
+};
+
 }  // namespace penumbra::shadow_maps

@@ -7,39 +7,20 @@ namespace penumbra::shadow_maps {
 std::vector<Parameter> summed_area_parameters() {
   constexpr std::int64_t largest_kernel = 129;  // texels
   std::vector<Parameter> list;
-  Parameter kernel;
-  kernel.name = "kernel";
-  kernel.type = ParameterType::integer;
-  kernel.default_value = std::int64_t{5};
-  kernel.minimum = 1;
-  kernel.maximum = largest_kernel;
-  kernel.unit = "texels";
-  kernel.meaning = "Width of the filter; any width costs the same.";
-  kernel.variant = true;
-  list.push_back(kernel);
-
-  Parameter adaptive;
-  adaptive.name = "adaptive";
-  adaptive.type = ParameterType::boolean;
-  adaptive.default_value = true;
-  adaptive.meaning =
-      "Widen the filter, pixel by pixel, to the texels that a pixel covers, at most " +
-      std::to_string(largest_kernel) + ".";
-  adaptive.variant = true;
-  list.push_back(adaptive);
-
-  Parameter table;
-  table.name = "table";
-  table.type = ParameterType::choice;
-  table.choices = {"fp32", "distributed", "int32", "fp64"};
-  table.default_value = std::string("int32");
-  table.meaning =
-      "What sums of moments are kept in. fp32: single floats. distributed: two floats a moment, "
-      "one "
-      "for its first eight bits. int32: fixed point that may wrap. fp64: doubles, where the device "
-      "has them.";
-  table.variant = true;
-  list.push_back(table);
+  list.push_back(
+      integer("kernel", 5, {1, largest_kernel}, "Width of the filter; any width costs the same.")
+          .in("texels")
+          .compiled());
+  list.push_back(
+      boolean("adaptive", true,
+              "Widen the filter, pixel by pixel, to the texels that a pixel covers, at most " +
+                  std::to_string(largest_kernel) + ".")
+          .compiled());
+  list.push_back(choice("table", "int32", {"fp32", "distributed", "int32", "fp64"},
+                        "What sums of moments are kept in. fp32: single floats. distributed: two "
+                        "floats a moment, one for its first eight bits. int32: fixed point that "
+                        "may wrap. fp64: doubles, where the device has them.")
+                     .compiled());
   return list;
 }
 

@@ -101,43 +101,26 @@ VolumeTriangles volume_triangles(const PrepareContext& context, bool every_edge)
 }
 
 Parameter ablation_parameter() {
-  Parameter ablation;
-  ablation.name = "ablation";
-  ablation.type = ParameterType::choice;
-  ablation.choices = {"none", "far-clipped", "uncapped", "gaps-ignored", "first-corner"};
-  ablation.default_value = std::string("none");
-  ablation.meaning =
+  return choice(
+      "ablation", "none", {"none", "far-clipped", "uncapped", "gaps-ignored", "first-corner"},
       "Leaves one precaution out, to show what it is for. far-clipped: volumes are cut off by a "
-      "far "
-      "plane behind the last visible surface. uncapped: volumes have sides only. gaps-ignored: "
+      "far plane behind the last visible surface. uncapped: volumes have sides only. gaps-ignored: "
       "meshes with gaps are taken for closed ones. first-corner: the side of a triangle that looks "
-      "at the light is decided by the direction to its first corner.";
-  return ablation;
+      "at the light is decided by the direction to its first corner.");
 }
 
 Parameter clamp_parameter() {
-  Parameter clamp;
-  clamp.name = "clamp";
-  clamp.type = ParameterType::boolean;
-  clamp.default_value = false;
-  clamp.meaning =
-      "Culls casters that cannot shadow anything visible and, where shadows are hard, those that "
-      "lie "
-      "in the shadow of another, and ends volumes behind the last visible surface instead of at "
-      "infinity.";
-  return clamp;
+  return boolean("clamp", false,
+                 "Culls casters that cannot shadow anything visible and, where shadows are hard, "
+                 "those that lie in the shadow of another, and ends volumes behind the last "
+                 "visible surface instead of at infinity.");
 }
 
 std::vector<Parameter> volume_parameters() {
-  Parameter passes;
-  passes.name = "stencil_passes";
-  passes.type = ParameterType::integer;
-  passes.default_value = std::int64_t{1};
-  passes.minimum = 1;
-  passes.maximum = 2;
-  passes.meaning =
-      "1: front and back faces of volumes are counted in one pass by a two-sided stencil. 2: in a "
-      "pass each, as before there was one.";
+  const Parameter passes =
+      integer("stencil_passes", 1, {1, 2},
+              "1: front and back faces of volumes are counted in one pass by a two-sided stencil. "
+              "2: in a pass each, as before there was one.");
   return {clamp_parameter(), passes};
 }
 

@@ -7,46 +7,22 @@ namespace {
 std::vector<Parameter> esm_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
   for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
-  Parameter c;
-  c.name = "c";
-  c.default_value = 80.0;
-  c.minimum = 1.0;
-  c.maximum = 1000.0;
-  c.scale = ParameterScale::logarithmic;
-  c.meaning =
-      "Steepness of the exponential over the map's range. Higher: less light leaks in at contacts. "
-      "Linear filtering overflows above 88.7, with fp16 above 11.";
-  list.push_back(c);
-
-  Parameter filtering;
-  filtering.name = "filtering";
-  filtering.type = ParameterType::choice;
-  filtering.choices = {"linear", "logarithmic"};
-  filtering.default_value = std::string("linear");
-  filtering.meaning =
-      "What the map holds. linear: exp(c z), which samplers may filter. logarithmic: c z, filtered "
-      "by the shader alone, so without mips; no c overflows.";
-  filtering.variant = true;
-  list.push_back(filtering);
-
-  Parameter fallback;
-  fallback.name = "fallback";
-  fallback.type = ParameterType::choice;
-  fallback.choices = {"none", "threshold", "z-max"};
-  fallback.default_value = std::string("threshold");
-  fallback.meaning =
-      "Where something in the kernel lies behind the receiver, 2x2 comparisons take over. "
-      "threshold: where the result passes 1. z-max: where the kernel's greatest depth does.";
-  fallback.variant = true;
-  list.push_back(fallback);
-
-  Parameter threshold;
-  threshold.name = "threshold";
-  threshold.default_value = 0.02;
-  threshold.minimum = 0.0;
-  threshold.maximum = 1000.0;
-  threshold.meaning = "What the result may pass 1 by before the fallback is taken.";
-  list.push_back(threshold);
+  list.push_back(real("c", 80.0, {1.0, 1000.0},
+                      "Steepness of the exponential over the map's range. Higher: less light leaks "
+                      "in at contacts. Linear filtering overflows above 88.7, with fp16 above 11.")
+                     .log());
+  list.push_back(
+      choice("filtering", "linear", {"linear", "logarithmic"},
+             "What the map holds. linear: exp(c z), which samplers may filter. logarithmic: c z, "
+             "filtered by the shader alone, so without mips; no c overflows.")
+          .compiled());
+  list.push_back(
+      choice("fallback", "threshold", {"none", "threshold", "z-max"},
+             "Where something in the kernel lies behind the receiver, 2x2 comparisons take over. "
+             "threshold: where the result passes 1. z-max: where the kernel's greatest depth does.")
+          .compiled());
+  list.push_back(real("threshold", 0.02, {0.0, 1000.0},
+                      "What the result may pass 1 by before the fallback is taken."));
   list.push_back(shadow_maps::precision_parameter(
       "Bits of a texel. 16 overflow above c 11 with linear filtering, and round c z coarsely with "
       "logarithmic."));
@@ -106,10 +82,8 @@ class ExponentialShadowMap : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_esm();
 TechniqueDescription describe_esm() {
   TechniqueDescription description;
-  description.id = "esm";
   description.label = "ESM";
   description.title = "Exponential shadow map";
   description.family = "map";
@@ -121,8 +95,7 @@ TechniqueDescription describe_esm() {
       {"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
       {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
       shadow_maps::mip_level_diagnostic()};
-  description.shader = "techniques/esm/shadow.glsl";
-  description.create = [] { return std::make_unique<ExponentialShadowMap>(); };
+  description.create = create_technique<ExponentialShadowMap>;
   return description;
 }
 

@@ -4,14 +4,7 @@ namespace penumbra::techniques {
 namespace {
 
 Parameter constant_parameter(const char* name, double value, const char* meaning) {
-  Parameter constant;
-  constant.name = name;
-  constant.default_value = value;
-  constant.minimum = 1.0;
-  constant.maximum = 1000.0;
-  constant.scale = ParameterScale::logarithmic;
-  constant.meaning = meaning;
-  return constant;
+  return real(name, value, {1.0, 1000.0}, meaning).log();
 }
 
 std::vector<Parameter> evsm_parameters() {
@@ -25,14 +18,9 @@ std::vector<Parameter> evsm_parameters() {
       "c_negative", 10.0,
       "Steepness of the warp -exp(c (1/2 - z)), which mends surfaces that slope within the kernel. "
       "Its square overflows above 88.7, with fp16 above 11."));
-  Parameter components;
-  components.name = "components";
-  components.type = ParameterType::choice;
-  components.choices = {"2", "4"};
-  components.default_value = std::string("4");
-  components.meaning = "Moments in a texel: those of the positive warp, or of both.";
-  components.variant = true;
-  list.push_back(components);
+  list.push_back(choice("components", "4", {"2", "4"},
+                        "Moments in a texel: those of the positive warp, or of both.")
+                     .compiled());
   list.push_back(shadow_maps::precision_parameter(
       "Bits of a moment. 16 overflow above c_positive 5.5, too little to stop bleeding."));
   list.push_back(shadow_maps::bleeding_parameter(0.0));
@@ -66,10 +54,8 @@ class ExponentialVarianceShadowMap : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_evsm();
 TechniqueDescription describe_evsm() {
   TechniqueDescription description;
-  description.id = "evsm";
   description.label = "EVSM";
   description.title = "Exponential variance shadow map";
   description.family = "map";
@@ -80,8 +66,7 @@ TechniqueDescription describe_evsm() {
       shadow_maps::views_diagnostic(),
       {"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
       shadow_maps::mip_level_diagnostic()};
-  description.shader = "techniques/evsm/shadow.glsl";
-  description.create = [] { return std::make_unique<ExponentialVarianceShadowMap>(); };
+  description.create = create_technique<ExponentialVarianceShadowMap>;
   return description;
 }
 

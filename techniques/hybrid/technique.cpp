@@ -137,21 +137,14 @@ class Hybrid : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_hybrid();
 TechniqueDescription describe_hybrid() {
-  Parameter reach;
-  reach.name = "reach";
-  reach.type = ParameterType::integer;
-  reach.default_value = std::int64_t{1};
-  reach.minimum = 1;
-  reach.maximum = 8;
-  reach.unit = "texels";
-  reach.meaning =
-      "A sample is at a silhouette where the 2 reach by 2 reach texels around its place disagree.";
-  reach.variant = true;
+  const Parameter reach = integer("reach", 1, {1, 8},
+                                  "A sample is at a silhouette where the 2 reach by 2 reach texels "
+                                  "around its place disagree.")
+                              .in("texels")
+                              .compiled();
 
   TechniqueDescription description;
-  description.id = "hybrid";
   description.label = "Hybrid";
   description.title = "Shadow map with volumes at silhouettes";
   description.family = "hybrid";
@@ -164,8 +157,7 @@ TechniqueDescription describe_hybrid() {
       {"mask",
        "The map's answer in grey; in colour the samples that volumes decide: yellow lit, red "
        "dark."}};
-  description.shader = "techniques/hybrid/shadow.glsl";
-  description.create = [] { return std::make_unique<Hybrid>(); };
+  description.create = create_technique<Hybrid>;
   return description;
 }
 

@@ -6,27 +6,13 @@ namespace {
 std::vector<Parameter> msm_parameters() {
   std::vector<Parameter> list = shadow_maps::map_parameters();
   for (const Parameter& parameter : shadow_maps::blur_parameters()) list.push_back(parameter);
-  Parameter precision;
-  precision.name = "precision";
-  precision.type = ParameterType::choice;
-  precision.choices = {"unorm16", "fp32"};
-  precision.default_value = std::string("fp32");
-  precision.meaning =
-      "What a moment is kept in: 64 or 128 bits a texel. unorm16 asks for a moment_bias of 6e-5 or "
-      "more.";
-  precision.variant = true;
-  list.push_back(precision);
-
-  Parameter bias;
-  bias.name = "moment_bias";
-  bias.default_value = 3e-5;
-  bias.minimum = 0.0;
-  bias.maximum = 0.1;
-  bias.meaning =
-      "Share of moments of scattered depths that is mixed in, so that rounding leaves moments "
-      "which "
-      "depths can have. More: more bleeding.";
-  list.push_back(bias);
+  list.push_back(choice("precision", "fp32", {"unorm16", "fp32"},
+                        "What a moment is kept in: 64 or 128 bits a texel. unorm16 asks for a "
+                        "moment_bias of 6e-5 or more.")
+                     .compiled());
+  list.push_back(real("moment_bias", 3e-5, {0.0, 0.1},
+                      "Share of moments of scattered depths that is mixed in, so that rounding "
+                      "leaves moments which depths can have. More: more bleeding."));
   list.push_back(shadow_maps::bleeding_parameter(0.05));
   return list;
 }
@@ -56,10 +42,8 @@ class MomentShadowMap : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_msm();
 TechniqueDescription describe_msm() {
   TechniqueDescription description;
-  description.id = "msm";
   description.label = "MSM";
   description.title = "Moment shadow map";
   description.family = "map";
@@ -70,8 +54,7 @@ TechniqueDescription describe_msm() {
       shadow_maps::views_diagnostic(),
       {"moments", "Mean depth in red and ten times the deviation from it in green."},
       shadow_maps::mip_level_diagnostic()};
-  description.shader = "techniques/msm/shadow.glsl";
-  description.create = [] { return std::make_unique<MomentShadowMap>(); };
+  description.create = create_technique<MomentShadowMap>;
   return description;
 }
 

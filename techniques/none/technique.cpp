@@ -15,16 +15,13 @@ class None : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_none();
 TechniqueDescription describe_none() {
   TechniqueDescription description;
-  description.id = "none";
   description.label = "No";
   description.title = "No shadows";
   description.family = "none";
   description.source = "van Sambeek 2007, 3.2.4";
-  description.shader = "techniques/none/shadow.glsl";
-  description.create = [] { return std::make_unique<None>(); };
+  description.create = create_technique<None>;
   return description;
 }
 

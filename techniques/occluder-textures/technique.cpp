@@ -165,44 +165,24 @@ class OccluderTextures : public Technique {
 
 Parameter integer_parameter(const char* name, std::int64_t value, double low, double high,
                             const char* unit, const char* meaning) {
-  Parameter parameter;
-  parameter.name = name;
-  parameter.type = ParameterType::integer;
-  parameter.default_value = value;
-  parameter.minimum = low;
-  parameter.maximum = high;
-  parameter.unit = unit;
-  parameter.meaning = meaning;
-  return parameter;
+  return integer(name, value, {low, high}, meaning).in(unit);
 }
 
 Parameter boolean_parameter(const char* name, const char* meaning) {
-  Parameter parameter;
-  parameter.name = name;
-  parameter.type = ParameterType::boolean;
-  parameter.default_value = true;
-  parameter.meaning = meaning;
-  return parameter;
+  return boolean(name, true, meaning);
 }
 
 }  // namespace
 
-TechniqueDescription describe_occluder_textures();
 TechniqueDescription describe_occluder_textures() {
-  Parameter source;
-  source.name = "source";
-  source.type = ParameterType::choice;
-  source.choices = {"scene", "generated"};
-  source.default_value = std::string("scene");
-  source.meaning =
-      "scene: the planes that the scene's author placed, and generated ones where there are none. "
-      "generated: always those.";
+  const Parameter source = choice("source", "scene", {"scene", "generated"},
+                                  "scene: the planes that the scene's author placed, and generated "
+                                  "ones where there are none. generated: always those.");
   Parameter resolution = integer_parameter("resolution", 256, 16, 1024, "texels",
                                            "Width and height of every occluder texture.");
   resolution.scale = ParameterScale::logarithmic;
 
   TechniqueDescription description;
-  description.id = "occluder-textures";
   description.label = "OT";
   description.title = "Occluder textures";
   description.family = "receiver";
@@ -221,8 +201,7 @@ TechniqueDescription describe_occluder_textures() {
                         "this, planes cast false shadows towards the light."),
       boolean_parameter("bilinear", "Mix the four nearest texels instead of taking the nearest.")};
   description.diagnostics = {{"textures", "The occluder textures side by side."}};
-  description.shader = "techniques/occluder-textures/shadow.glsl";
-  description.create = [] { return std::make_unique<OccluderTextures>(); };
+  description.create = create_technique<OccluderTextures>;
   return description;
 }
 

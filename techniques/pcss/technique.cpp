@@ -4,16 +4,7 @@ namespace penumbra::techniques {
 namespace {
 
 Parameter taps_parameter(const char* name, std::int64_t count, const char* meaning) {
-  Parameter taps;
-  taps.name = name;
-  taps.type = ParameterType::integer;
-  taps.default_value = count;
-  taps.minimum = 1;
-  taps.maximum = 1024;
-  taps.scale = ParameterScale::logarithmic;
-  taps.meaning = meaning;
-  taps.variant = true;
-  return taps;
+  return integer(name, count, {1, 1024}, meaning).log().compiled();
 }
 
 std::vector<Parameter> pcss_parameters() {
@@ -21,27 +12,15 @@ std::vector<Parameter> pcss_parameters() {
   list.push_back(taps_parameter("search_taps", 32, "Texels searched for blockers, per pixel."));
   list.push_back(taps_parameter("taps", 64,
                                 "Comparisons of the filter, per pixel where blockers were found."));
-  Parameter blocker;
-  blocker.name = "blocker";
-  blocker.type = ParameterType::choice;
-  blocker.choices = {"average", "nearest"};
-  blocker.default_value = std::string("average");
-  blocker.meaning =
-      "Whose distance sets the penumbra's width: the mean of the blockers found, or the one "
-      "nearest "
-      "to the light.";
-  blocker.variant = true;
-  list.push_back(blocker);
-
-  Parameter horizon;
-  horizon.name = "horizon";
-  horizon.type = ParameterType::boolean;
-  horizon.default_value = true;
-  horizon.meaning =
-      "Leave out what part of the light stands behind the receiver's own plane: a map of biased "
-      "comparisons does not know that a body shadows itself there.";
-  horizon.variant = true;
-  list.push_back(horizon);
+  list.push_back(choice("blocker", "average", {"average", "nearest"},
+                        "Whose distance sets the penumbra's width: the mean of the blockers found, "
+                        "or the one nearest to the light.")
+                     .compiled());
+  list.push_back(
+      boolean("horizon", true,
+              "Leave out what part of the light stands behind the receiver's own plane: a map of "
+              "biased comparisons does not know that a body shadows itself there.")
+          .compiled());
   return list;
 }
 
@@ -77,10 +56,8 @@ class PercentageCloserSoftShadows : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_pcss();
 TechniqueDescription describe_pcss() {
   TechniqueDescription description;
-  description.id = "pcss";
   description.label = "PCSS";
   description.title = "Percentage-closer soft shadows";
   description.family = "map";
@@ -91,8 +68,7 @@ TechniqueDescription describe_pcss() {
       shadow_maps::views_diagnostic(),
       {"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
       {"penumbra-width", "Width of the filter; white is an eighth of the map."}};
-  description.shader = "techniques/pcss/shadow.glsl";
-  description.create = [] { return std::make_unique<PercentageCloserSoftShadows>(); };
+  description.create = create_technique<PercentageCloserSoftShadows>;
   return description;
 }
 

@@ -135,27 +135,19 @@ class Projected : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_projected();
 TechniqueDescription describe_projected() {
-  Parameter tolerance;
-  tolerance.name = "tolerance";
-  tolerance.type = ParameterType::real;
-  tolerance.default_value = 1e-5;
-  tolerance.minimum = 0.0;
-  tolerance.maximum = 0.01;
-  tolerance.meaning =
-      "Distance from a receiver's plane, in diagonals of the scene, within which a surface lies on "
-      "it and nothing casts a shadow on it.";
+  const Parameter tolerance =
+      real("tolerance", 1e-5, {0.0, 0.01},
+           "Distance from a receiver's plane, in diagonals of the scene, within which a surface "
+           "lies on it and nothing casts a shadow on it.");
 
   TechniqueDescription description;
-  description.id = "projected";
   description.label = "Proj";
   description.title = "Projected planar shadows";
   description.family = "planar";
   description.source = "van Sambeek 2007, 2.3; Blinn 1988";
   description.parameters = {tolerance};
-  description.shader = "techniques/projected/shadow.glsl";
-  description.create = [] { return std::make_unique<Projected>(); };
+  description.create = create_technique<Projected>;
   return description;
 }
 

@@ -23,29 +23,19 @@ class RayTraced : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_ray_traced();
 TechniqueDescription describe_ray_traced() {
-  Parameter rays;
-  rays.name = "rays";
-  rays.type = ParameterType::integer;
-  rays.default_value = std::int64_t{1};
-  rays.minimum = 1;
-  rays.maximum = 1024;
-  rays.scale = ParameterScale::logarithmic;
-  rays.meaning =
-      "Shadow rays per pixel and light, to low-discrepancy points of the extent. One ray goes to "
-      "the "
-      "centre: exact hard shadows.";
+  const Parameter rays = integer("rays", 1, {1, 1024},
+                                 "Shadow rays per pixel and light, to low-discrepancy points of "
+                                 "the extent. One ray goes to the centre: exact hard shadows.")
+                             .log();
 
   TechniqueDescription description;
-  description.id = "ray-traced";
   description.label = "RT";
   description.title = "Ray-traced shadows";
   description.family = "traced";
   description.source = "Whitted 1980; Cook, Porter and Carpenter 1984";
   description.parameters = {rays};
-  description.shader = "techniques/ray-traced/shadow.glsl";
-  description.create = [] { return std::make_unique<RayTraced>(); };
+  description.create = create_technique<RayTraced>;
   return description;
 }
 

@@ -24,43 +24,30 @@ class Reference : public Technique {
   reference::OcclusionMask mask_;
 };
 
-Parameter choice(const char* name, std::vector<std::string> choices, const char* meaning) {
-  Parameter parameter;
-  parameter.name = name;
-  parameter.type = ParameterType::choice;
-  parameter.default_value = choices.front();
-  parameter.choices = std::move(choices);
-  parameter.meaning = meaning;
-  parameter.variant = true;
-  return parameter;
-}
-
 }  // namespace
 
-TechniqueDescription describe_reference();
 TechniqueDescription describe_reference() {
   TechniqueDescription description;
-  description.id = "reference";
   description.label = "REF";
   description.title = "Converged area light";
   description.family = "truth";
   description.source = "van Sambeek 2007, 4.1.2";
   description.parameters = {
-      choice(
-          "mode", {"shaded", "visibility"},
-          "shaded: light comes from each point of the extent in turn. visibility: all light "
-          "comes from the centre, as techniques have it, times the visible share of the extent."),
-      choice("sampling", {"low-discrepancy", "random"},
+      choice("mode", "shaded", {"shaded", "visibility"},
+             "shaded: light comes from each point of the extent in turn. visibility: all light "
+             "comes from the centre, as techniques have it, times the visible share of the extent.")
+          .compiled(),
+      choice("sampling", "low-discrepancy", {"low-discrepancy", "random"},
              "How the points lie on the extent. low-discrepancy: Sobol' points with Owen's "
-             "scrambling. random: independent.")};
+             "scrambling. random: independent.")
+          .compiled()};
   description.diagnostics = {
       {"uncertainty",
        "Standard error of the first light's brightness, over 16 scrambles of its points: black "
        "below 1/1024 of a level of 255 in linear light, white from one level on, logarithmic "
        "between.",
        true}};
-  description.shader = "techniques/reference/shadow.glsl";
-  description.create = [] { return std::make_unique<Reference>(); };
+  description.create = create_technique<Reference>;
   return description;
 }
 

@@ -40,10 +40,8 @@ class SummedAreaVarianceShadowMap : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_savsm();
 TechniqueDescription describe_savsm() {
   TechniqueDescription description;
-  description.id = "savsm";
   description.label = "SAVSM";
   description.title = "Summed-area variance shadow map";
   description.family = "map";
@@ -56,8 +54,7 @@ TechniqueDescription describe_savsm() {
        "Mean depth by the table: of one texel red, of the kernel green; the map's own depth blue."},
       {"filter-width",
        "By their logarithms: texels that a pixel covers red, width of the filter green."}};
-  description.shader = "techniques/savsm/shadow.glsl";
-  description.create = [] { return std::make_unique<SummedAreaVarianceShadowMap>(); };
+  description.create = create_technique<SummedAreaVarianceShadowMap>;
   return description;
 }
 

@@ -25,10 +25,8 @@ class BruteForceShadowVolumes : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_shadow_volumes_brute_force();
 TechniqueDescription describe_shadow_volumes_brute_force() {
   TechniqueDescription description;
-  description.id = "shadow-volumes-brute-force";
   description.label = "SV brute";
   description.title = "Shadow volumes, brute force";
   description.family = "volume";
@@ -36,7 +34,7 @@ TechniqueDescription describe_shadow_volumes_brute_force() {
   description.parameters = shadow_volumes::volume_parameters();
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
-  description.create = [] { return std::make_unique<BruteForceShadowVolumes>(); };
+  description.create = create_technique<BruteForceShadowVolumes>;
   return description;
 }
 

@@ -27,10 +27,8 @@ class ShadowVolumesZPassPlus : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_shadow_volumes_zpass_plus();
 TechniqueDescription describe_shadow_volumes_zpass_plus() {
   TechniqueDescription description;
-  description.id = "shadow-volumes-zpass-plus";
   description.label = "SV z-pass+";
   description.title = "Shadow volumes, z-pass+";
   description.family = "volume";
@@ -38,7 +36,7 @@ TechniqueDescription describe_shadow_volumes_zpass_plus() {
   description.parameters = shadow_volumes::volume_parameters();
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
-  description.create = [] { return std::make_unique<ShadowVolumesZPassPlus>(); };
+  description.create = create_technique<ShadowVolumesZPassPlus>;
   return description;
 }
 

@@ -26,10 +26,8 @@ class ShadowVolumesZPass : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_shadow_volumes_zpass();
 TechniqueDescription describe_shadow_volumes_zpass() {
   TechniqueDescription description;
-  description.id = "shadow-volumes-zpass";
   description.label = "SV z-pass";
   description.title = "Shadow volumes, z-pass";
   description.family = "volume";
@@ -37,7 +35,7 @@ TechniqueDescription describe_shadow_volumes_zpass() {
   description.parameters = shadow_volumes::volume_parameters();
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
-  description.create = [] { return std::make_unique<ShadowVolumesZPass>(); };
+  description.create = create_technique<ShadowVolumesZPass>;
   return description;
 }
 

@@ -25,19 +25,13 @@ class ShadowVolumes : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_shadow_volumes();
 TechniqueDescription describe_shadow_volumes() {
-  Parameter counting;
-  counting.name = "counting";
-  counting.type = ParameterType::choice;
-  counting.choices = {"behind", "automatic"};
-  counting.default_value = std::string("behind");
-  counting.meaning =
-      "behind: all volumes are counted behind the surface (z-fail). automatic: before it (z-pass) "
-      "where the caster's shadow provably does not reach the camera's near plane.";
+  const Parameter counting =
+      choice("counting", "behind", {"behind", "automatic"},
+             "behind: all volumes are counted behind the surface (z-fail). automatic: before it "
+             "(z-pass) where the caster's shadow provably does not reach the camera's near plane.");
 
   TechniqueDescription description;
-  description.id = "shadow-volumes";
   description.label = "SV";
   description.title = "Shadow volumes";
   description.family = "volume";
@@ -47,7 +41,7 @@ TechniqueDescription describe_shadow_volumes() {
   description.parameters.push_back(shadow_volumes::ablation_parameter());
   description.diagnostics = {shadow_volumes::count_diagnostic()};
   description.shader = "renderer/shadow_volumes/stencil_shadow.glsl";
-  description.create = [] { return std::make_unique<ShadowVolumes>(); };
+  description.create = create_technique<ShadowVolumes>;
   return description;
 }
 

@@ -28,38 +28,23 @@ class SoftShadowVolumes : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_soft_shadow_volumes();
 TechniqueDescription describe_soft_shadow_volumes() {
-  Parameter table_size;
-  table_size.name = "table_size";
-  table_size.type = ParameterType::integer;
-  table_size.default_value = std::int64_t{64};
-  table_size.minimum = 4;
-  table_size.maximum = 128;
-  table_size.scale = ParameterScale::logarithmic;
-  table_size.meaning =
-      "Places along each axis of the table that knows what part of the light lies beyond an edge.";
+  const Parameter table_size = integer("table_size", 64, {4, 128},
+                                       "Places along each axis of the table that knows what part "
+                                       "of the light lies beyond an edge.")
+                                   .log();
 
-  Parameter accumulation;
-  accumulation.name = "accumulation";
-  accumulation.type = ParameterType::choice;
-  accumulation.choices = {"float32", "float16"};
-  accumulation.default_value = std::string("float32");
-  accumulation.meaning = "Format of the image that the parts of the light are added up in.";
+  const Parameter accumulation =
+      choice("accumulation", "float32", {"float32", "float16"},
+             "Format of the image that the parts of the light are added up in.");
 
-  Parameter overlap;
-  overlap.name = "overlap";
-  overlap.type = ParameterType::choice;
-  overlap.choices = {"count", "add"};
-  overlap.default_value = std::string("count");
-  overlap.meaning =
-      "Where penumbrae overlap. count: what several casters hide is found at 32 points of the "
-      "light and counted once. add: it counts once for each caster, as published in 2003 and "
-      "2007.";
-  overlap.variant = true;
+  const Parameter overlap = choice("overlap", "count", {"count", "add"},
+                                   "Where penumbrae overlap. count: what several casters hide is "
+                                   "found at 32 points of the light and counted once. add: it "
+                                   "counts once for each caster, as published in 2003 and 2007.")
+                                .compiled();
 
   TechniqueDescription description;
-  description.id = "soft-shadow-volumes";
   description.label = "SSV";
   description.title = "Soft shadow volumes";
   description.family = "volume";
@@ -75,8 +60,7 @@ TechniqueDescription describe_soft_shadow_volumes() {
       {"wedges",
        "What the wedges of the first light add to the hidden part of it (red) or take away "
        "(blue); darker grey where its centre is hidden."}};
-  description.shader = "techniques/soft-shadow-volumes/shadow.glsl";
-  description.create = [] { return std::make_unique<SoftShadowVolumes>(); };
+  description.create = create_technique<SoftShadowVolumes>;
   return description;
 }
 

@@ -6,50 +6,23 @@ namespace penumbra::techniques {
 namespace {
 
 /// A shadow map whose comparison ramps over a range of depth instead of stepping.
-class Template : public Technique {
- public:
-  /// Say here what must exist before anything is drawn (stencil, adjacency, light points, ...), and
-  /// throw unsupported("why", "field") for a light or scene that cannot be served.
-  void require(const TechniqueInput& input, Requirements& needs) override {
-    shadow_maps::DepthMap::require(input, needs);
-  }
-
-  /// Once per frame and batch of light points. Allocate on first use, draw inside context.pass.
-  void prepare(PrepareContext& context) override { map_.draw(context, {}); }
-
-  /// Every name that shadow.glsl reads, and no other.
-  void bind(vulkan::Bindings& bindings) const override { map_.bind(bindings); }
-
- private:
-  shadow_maps::DepthMap map_;
-};
+class Template : public shadow_maps::MapTechnique {};
 
 }  // namespace
 
-TechniqueDescription describe_template();
 TechniqueDescription describe_template() {
-  TechniqueDescription description;
-  description.id = "template";
-  description.label = "TPL";
-  description.title = "Shadow map with a depth ramp";
-  description.family = "map";
-  description.source = "none: an example";
-  description.parameters = shadow_maps::map_parameters();
   // GLSL reads this as parameter_ramp; validation, the JSON Schema and the web form follow from it.
-  Parameter ramp;
-  ramp.name = "ramp";
-  ramp.default_value = 0.01;
-  ramp.minimum = 0.0001;
-  ramp.maximum = 1.0;
-  ramp.scale = ParameterScale::logarithmic;
-  ramp.unit = "m";
-  ramp.meaning = "Depth behind a caster over which its shadow darkens.";
-  description.parameters.push_back(ramp);
-  description.diagnostics = {
-      {"depth", "Distance from the light, as a fraction of the map's range."}};
-  description.shader = "techniques/template/shadow.glsl";
-  description.create = [] { return std::make_unique<Template>(); };
-  return description;
+  const Parameter ramp =
+      real("ramp", 0.01, {0.0001, 1.0}, "Depth behind a caster over which its shadow darkens.")
+          .log()
+          .in("m");
+  return {.label = "TPL",
+          .title = "Shadow map with a depth ramp",
+          .family = "map",
+          .source = "none: an example",
+          .parameters = shadow_maps::map_parameters() + std::vector{ramp},
+          .diagnostics = {{"depth", "Distance from the light, as a share of the map's range."}},
+          .create = create_technique<Template>};
 }
 
 }  // namespace penumbra::techniques

@@ -37,10 +37,8 @@ class VarianceShadowMap : public Technique {
 
 }  // namespace
 
-TechniqueDescription describe_vsm();
 TechniqueDescription describe_vsm() {
   TechniqueDescription description;
-  description.id = "vsm";
   description.label = "VSM";
   description.title = "Variance shadow map";
   description.family = "map";
@@ -51,8 +49,7 @@ TechniqueDescription describe_vsm() {
       shadow_maps::views_diagnostic(),
       {"moments", "Mean depth in red and ten times the deviation from it in green."},
       shadow_maps::mip_level_diagnostic()};
-  description.shader = "techniques/vsm/shadow.glsl";
-  description.create = [] { return std::make_unique<VarianceShadowMap>(); };
+  description.create = create_technique<VarianceShadowMap>;
   return description;
 }
 

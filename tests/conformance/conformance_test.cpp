@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
@@ -29,7 +31,9 @@ using test::open_ground;
 const std::vector<TechniqueDescription>& subjects() {
   static const std::vector<TechniqueDescription> list = [] {
     auto all = techniques::all();
-    auto example = techniques::finish_descriptions({techniques::describe_template()});
+    TechniqueDescription described = techniques::describe_template();
+    described.id = "template";
+    auto example = techniques::finish_descriptions({described});
     example.front().files = all.front().files;
     all.push_back(example.front());
     return all;
@@ -245,34 +249,57 @@ std::string text_of_page(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// The page of a technique, and those of the layouts whose parameters it shares.
-std::string pages_of(const TechniqueDescription& technique) {
-  std::string text = text_of_page("techniques/" + technique.id + "/README.md");
+/// Rows of a page's tables by the name in code that they begin with; a name may begin several.
+std::multimap<std::string, std::string> rows_of(const std::string& page) {
+  std::multimap<std::string, std::string> rows;
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("| `")) rows.emplace(line.substr(3, line.find('`', 3) - 3), line);
+  return rows;
+}
+
+const std::multimap<std::string, std::string>& shared_rows() {
+  static const auto rows = rows_of(text_of_page("techniques/shared-parameters.md"));
+  return rows;
+}
+
+/// Rows of the layouts' pages, whose parameters every technique with a layout has.
+std::multimap<std::string, std::string> layout_rows(const TechniqueDescription& technique) {
+  std::multimap<std::string, std::string> rows;
   for (const Parameter& parameter : technique.parameters)
     if (parameter.name == "layout")
       for (const std::string& layout : parameter.choices)
-        text += "\n" + text_of_page("renderer/shadow_maps/layouts/" + layout + ".md");
-  return text;
+        rows.merge(rows_of(text_of_page("renderer/shadow_maps/layouts/" + layout + ".md")));
+  return rows;
 }
 
-// The page of a technique lists its parameters; a default that changed in the code only is found
-// here.
+// Every parameter has a row with its default: on the technique's page, or on that of shared ones,
+// or on a layout's. A default that changed in the code only is found here.
 TEST_P(Conformance, the_page_names_every_parameter_with_its_default) {
-  const std::string page = pages_of(technique());
-  for (std::size_t at = page.find("\n| `"); at != std::string::npos;
-       at = page.find("\n| `", at + 1)) {
-    const std::string row = page.substr(at + 1, page.find('\n', at + 1) - at - 1);
-    const std::string name = row.substr(3, row.find('`', 3) - 3);
-    const auto& declared = technique().parameters;
-    const auto found =
-        std::find_if(declared.begin(), declared.end(),
-                     [&](const Parameter& parameter) { return parameter.name == name; });
-    if (found == declared.end()) continue;  // tables of presets and diagnostics use the same form
-    EXPECT_THAT(row, testing::HasSubstr(to_text(found->default_value))) << row;
-  }
+  const auto own = rows_of(text_of_page("techniques/" + technique().id + "/README.md"));
+  const auto of_layouts = layout_rows(technique());
   for (const Parameter& parameter : technique().parameters) {
     if (parameter.name == "gamma") continue;  // the frame's, explained once
-    EXPECT_THAT(page, testing::HasSubstr("`" + parameter.name + "`"));
+    bool found = false;
+    for (const auto* page : {&own, &shared_rows(), &of_layouts}) {
+      const auto [first, last] = page->equal_range(parameter.name);
+      for (auto row = first; row != last; ++row)
+        EXPECT_THAT(row->second, testing::HasSubstr(to_text(parameter.default_value)));
+      found = first != last;
+      if (found) break;
+    }
+    EXPECT_TRUE(found) << "no page has a row for " << parameter.name;
+  }
+}
+
+TEST(SharedParameters, BelongToSeveralTechniques) {
+  for (const auto& [name, row] : shared_rows()) {
+    const auto users = std::count_if(
+        subjects().begin(), subjects().end(), [&](const TechniqueDescription& technique) {
+          return std::any_of(technique.parameters.begin(), technique.parameters.end(),
+                             [&](const Parameter& parameter) { return parameter.name == name; });
+        });
+    EXPECT_GE(users, 2) << row;
   }
 }
 

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "renderer/error.h"
@@ -84,6 +87,54 @@ TEST(Pages, ShowTheirTechniqueInPicturesThatAreThere) {
   }
 }
 
+/// Of a folder's files, by their names.
+std::map<std::string, std::string> texts_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path());
+    texts[entry.path().filename()] = {std::istreambuf_iterator<char>(file), {}};
+  }
+  return texts;
+}
+
+// What is repeated in every technique is what somebody has to write to try an idea.
+TEST(Template, IsAFewLines) {
+  std::size_t lines = 0;
+  for (const auto& [name, text] :
+       texts_in(std::filesystem::path(PENUMBRA_SOURCE_DIR) / "techniques/template")) {
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines += line.empty() ? 0 : 1;
+  }
+  EXPECT_GT(lines, 20u);
+  EXPECT_LE(lines, 55u);
+}
+
+TEST(Template, BecomesATechniqueOfItsOwnAndNothingElseIsTouched) {
+  namespace fs = std::filesystem;
+  const fs::path root = PENUMBRA_SOURCE_DIR;
+  std::string pattern = fs::temp_directory_path() / "penumbra-template-XXXXXX";
+  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+  const fs::path copy = pattern;
+  fs::create_directories(copy / "scripts");
+  fs::create_directories(copy / "techniques");
+  fs::copy(root / "scripts/new-technique", copy / "scripts");
+  fs::copy(root / "techniques/template", copy / "techniques/template");
+  const auto before = texts_in(copy / "techniques/template");
+
+  const std::string command =
+      "'" + (copy / "scripts/new-technique").string() + "' sun-dial > /dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(texts_in(copy / "techniques/template"), before);
+  const auto made = texts_in(copy / "techniques/sun-dial");
+  EXPECT_EQ(made.size(), before.size());
+  for (const auto& [name, text] : made)
+    EXPECT_EQ(text.find("emplate"), std::string::npos) << name << ":\n" << text;
+  EXPECT_THAT(made.at("technique.cpp"), HasSubstr("TechniqueDescription describe_sun_dial() {"));
+  EXPECT_THAT(made.at("technique.cpp"), HasSubstr("create_technique<SunDial>"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(copy / "techniques"), {}), 2);
+  fs::remove_all(copy);
+}
+
 TEST(Registry, ResolvesEveryPresetItOffers) {
   std::set<std::string> ids;
   for (const TechniqueDescription& technique : all()) ids.insert(technique.id);
@@ -114,6 +165,7 @@ TEST(Descriptions, StandInOrderOfIdAndEndWithTheCommonParameters) {
   EXPECT_EQ(list[0].id, "a");
   EXPECT_EQ(list[1].id, "b");
   EXPECT_THAT(names_of(list[0].parameters), ElementsAre("taps", "radius", "gamma"));
+  EXPECT_EQ(list[0].shader, "techniques/a/shadow.glsl");
 }
 
 TEST(Descriptions, GetDefaultsOfTheDeclaredType) {

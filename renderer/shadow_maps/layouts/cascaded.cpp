@@ -112,38 +112,23 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
 }
 
 std::vector<Parameter> cascade_parameters() {
-  Parameter cascades;
-  cascades.name = "cascades";
-  cascades.type = ParameterType::integer;
-  cascades.default_value = std::int64_t{4};
-  cascades.minimum = 2;
-  cascades.maximum = shader::max_map_views;
-  cascades.meaning = "Cascades that the depth before the camera is cut into, each map_size wide.";
+  const Parameter cascades =
+      integer("cascades", 4, {2, shader::max_map_views},
+              "Cascades that the depth before the camera is cut into, each map_size wide.");
 
-  Parameter lambda;
-  lambda.name = "split_lambda";
-  lambda.default_value = 0.5;
-  lambda.minimum = 0.0;
-  lambda.maximum = 1.0;
-  lambda.meaning =
-      "Where cascades end. 0: all are equally deep. 1: each is as many times deeper than the one "
-      "before it.";
+  const Parameter lambda = real("split_lambda", 0.5, {0.0, 1.0},
+                                "Where cascades end. 0: all are equally deep. 1: each is as many "
+                                "times deeper than the one before it.");
 
-  Parameter blend;
-  blend.name = "cascade_blend";
-  blend.default_value = 0.1;
-  blend.minimum = 0.0;
-  blend.maximum = 0.5;
-  blend.unit = "of depth";
-  blend.meaning = "Last part of a cascade's depth, over which the next one takes over gradually.";
+  const Parameter blend =
+      real("cascade_blend", 0.1, {0.0, 0.5},
+           "Last part of a cascade's depth, over which the next one takes over gradually.")
+          .in("of depth");
 
-  Parameter snapping;
-  snapping.name = "cascade_snapping";
-  snapping.type = ParameterType::boolean;
-  snapping.default_value = true;
-  snapping.meaning =
-      "Fit cascades to spheres and move them by whole texels, so that shadows do not crawl when "
-      "the camera moves; otherwise fit them tightly to what is seen.";
+  const Parameter snapping =
+      boolean("cascade_snapping", true,
+              "Fit cascades to spheres and move them by whole texels, so that shadows do not crawl "
+              "when the camera moves; otherwise fit them tightly to what is seen.");
   return {cascades, lambda, blend, snapping};
 }
 

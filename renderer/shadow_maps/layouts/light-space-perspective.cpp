@@ -22,16 +22,10 @@ std::vector<shader::MapView> fit_light_space_perspective(const ViewFitting& fitt
 
 Layout describe_light_space_perspective();
 Layout describe_light_space_perspective() {
-  Parameter distance;
-  distance.name = "warp_distance";
-  distance.default_value = 0.0;
-  distance.minimum = 0.0;
-  distance.maximum = 1e6;
-  distance.unit = "m";
-  distance.meaning =
-      "From the warp's eye to the nearest place seen: the less, the more texels go to what is "
-      "near. "
-      "0: the published optimum.";
+  const Parameter distance = real("warp_distance", 0.0, {0.0, 1e6},
+                                  "From the warp's eye to the nearest place seen: the less, the "
+                                  "more texels go to what is near. 0: the published optimum.")
+                                 .in("m");
   return {.id = "light-space-perspective",
           .meaning = "one view bent so that near places get more texels, for directional lights",
           .parameters = {distance},

@@ -51,13 +51,9 @@ std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
 
 Layout describe_single();
 Layout describe_single() {
-  Parameter focus;
-  focus.name = "focus";
-  focus.type = ParameterType::choice;
-  focus.choices = {"scene", "seen"};
-  focus.default_value = std::string("scene");
-  focus.meaning =
-      "What a directional light's view covers: the whole scene, or what the camera sees of it.";
+  const Parameter focus = choice(
+      "focus", "scene", {"scene", "seen"},
+      "What a directional light's view covers: the whole scene, or what the camera sees of it.");
   return {.id = "single",
           .meaning = "one view over the light's cone or the scene, six around a point light",
           .parameters = {focus},

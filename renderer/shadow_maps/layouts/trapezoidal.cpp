@@ -26,13 +26,7 @@ std::vector<shader::MapView> fit_trapezoidal(const ViewFitting& fitting) {
 }
 
 Parameter share_parameter(const char* name, double value, double maximum, const char* meaning) {
-  Parameter parameter;
-  parameter.name = name;
-  parameter.default_value = value;
-  parameter.minimum = 0.01;
-  parameter.maximum = maximum;
-  parameter.meaning = meaning;
-  return parameter;
+  return real(name, value, {0.01, maximum}, meaning);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "renderer/error.h"
-#include "renderer/metrics/metrics.h"
 #include "renderer/scene/light_points.h"
 #include "renderer/scene/transforms.h"
 #include "scenes/library.h"
