@@ -5,12 +5,12 @@
 namespace penumbra::server::storage {
 namespace {
 
-constexpr const char* ledger = "ledger";
-
 /// The ledger's line, and the journal up to it.
 void read_ledger(SQLite::Database& connection, const Journal& journal, Owner owner,
                  Examination& found) {
-  const auto tell = [&](const std::string& what) { found.damage.push_back({ledger, 1, "", what}); };
+  const auto tell = [&](const std::string& what) {
+    found.damage.push_back({ledger_table, 1, "", what});
+  };
   SQLite::Statement query(connection,
                           "SELECT commits, logged, unlogged, intact FROM checked_ledger");
   if (!query.executeStep() || query.getColumn(3).getInt() == 0)
@@ -69,7 +69,7 @@ Examination examine(SQLite::Database& connection, const Journal& journal, Owner 
   read_ledger(connection, journal, owner, found);
   auto expected = found.journal.rows;
   for (const auto& table : Seals::sealed_tables(connection))
-    if (table != ledger) check_table(connection, table, expected, found.damage);
+    if (table != ledger_table) check_table(connection, table, expected, found.damage);
   for (const auto& [name, seal] : expected)
     found.damage.push_back({name.first, name.second, "", "it was acknowledged and is missing"});
   return found;
@@ -78,7 +78,7 @@ Examination examine(SQLite::Database& connection, const Journal& journal, Owner 
 RowSeals seals_of(SQLite::Database& connection) {
   RowSeals rows;
   for (const auto& table : Seals::sealed_tables(connection)) {
-    if (table == ledger) continue;
+    if (table == ledger_table) continue;
     SQLite::Statement query(connection, "SELECT rowid, seal FROM main." + table);
     while (query.executeStep())
       rows[{table, query.getColumn(0).getInt64()}] = query.getColumn(1).getString();

@@ -20,6 +20,9 @@ struct Damage {
   bool operator==(const Damage&) const = default;
 };
 
+/// The table that holds the count of commits.
+inline constexpr const char* ledger_table = "ledger";
+
 /// Of a row whose seal is not that of its values.
 inline const std::string unfit = "its digest does not fit";
 

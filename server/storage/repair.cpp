@@ -26,8 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* ledger = "ledger";
-
 /// A row by the names of its columns, without its seal.
 using Values = std::vector<std::pair<std::string, json>>;
 
@@ -137,7 +135,7 @@ class Rebuild {
       return;  // not even the list of tables can be read
     }
     for (const auto& table : Seals::sealed_tables(to.connection)) {
-      if (table == ledger) continue;
+      if (table == ledger_table) continue;
       auto more = readable_rows(from.connection, table);
       rows.insert(rows.end(), std::make_move_iterator(more.begin()),
                   std::make_move_iterator(more.end()));
