@@ -16,6 +16,9 @@ before(async () => {
   server = await Server.start();
   await server.publish(small_study("nine", { techniques: nine, pages: [{ scene: "half-plane" }] }));
   await server.publish(small_study("shown", { techniques: nine.slice(0, 8), pages: [{ scene: "half-plane", reference: "shown" }] }));
+  await server.publish(small_study("long", { techniques: nine, pages: [{ scene: "half-plane" }], labels: {
+    most: { en: "most", nl: "meest werkelijkheidsgetrouwe schaduwweergave" },
+    least: { en: "least", nl: "minst werkelijkheidsgetrouwe schaduwweergave" } } }));
   browser = await launch();
 });
 
@@ -78,6 +81,33 @@ for (const [width, height] of [[768, 1024], [1280, 720], [1440, 900], [1920, 108
       await person.context.close();
     });
   }
+}
+
+for (const [width, height] of [[360, 740], [768, 1024], [1280, 720], [1440, 900]]) {
+  test(`long words of Dutch labels stay whole and clear of pictures in a window of ${width} by ${height}`, async () => {
+    const person = await Person.arrive(browser, server, "long", { viewport: { width, height }, reducedMotion: "reduce", locale: "nl-NL" });
+    await person.enter();
+    for (const shelf of [0, 8]) for (const letter of shelf === 0 ? ["A", "B"] : ["C"]) {
+      await person.picture(letter).focus();
+      await person.page.keyboard.press(shelf === 0 ? "Home" : "End");
+    }
+    const faults = await person.page.evaluate(() => [...document.querySelectorAll(".shelf.end")].flatMap((shelf) => {
+      const label = shelf.querySelector(".label");
+      const text = document.createRange();
+      text.selectNodeContents(label);
+      const inside = text.getBoundingClientRect();
+      const around = shelf.getBoundingClientRect();
+      const cut = inside.top < around.top - 0.5 || inside.bottom > around.bottom + 0.5 || inside.left < around.left || inside.right > around.right;
+      const covered = [...shelf.querySelectorAll(".picture")].filter((picture) => {
+        const box = picture.getBoundingClientRect();
+        return box.right > inside.left + 0.5 && box.left < inside.right - 0.5 && box.bottom > inside.top + 0.5 && box.top < inside.bottom - 0.5;
+      });
+      return [...(cut ? [`${label.textContent} is cut`] : []), ...covered.map(() => `a picture lies on ${label.textContent}`)];
+    }));
+    assert.deepEqual(faults, []);
+    assert.match(await person.page.locator(".shelf.end .label").first().textContent(), /werkelijkheidsgetrouwe/);
+    await person.context.close();
+  });
 }
 
 test("no picture in the tray moves when another is taken, and it returns to its own place", async () => {

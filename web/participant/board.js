@@ -44,6 +44,13 @@ export class Board {
       element.style.setProperty("--columns-upright", upright);
       element.style.setProperty("--rows-upright", Math.ceil(count / upright));
     }
+    const words = Object.values(this.labels).flatMap((label) => label.split(/[\s-]+/));
+    this.rack.style.setProperty("--longest-word", Math.max(...words.map((word) => word.length)));
+    // In a narrow window the pictures of a shelf begin below its label, however many lines it has.
+    const heights = new ResizeObserver((entries) => {
+      for (const { target } of entries) target.closest(".shelf").style.setProperty("--label", `${target.offsetHeight}px`);
+    });
+    for (const label of this.rack.querySelectorAll(".end .label")) heights.observe(label);
   }
 
   get places() {
