@@ -200,7 +200,7 @@ void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index
                                  index,
                                  notes_};
     light.draw(frame, [&](double share) {
-      if (has_many_points(light.needs()))
+      if (progress && has_many_points(light.needs()))
         progress((i + share) / static_cast<double>(lights_.size()));
     });
     if (request_.visibility) resolve_visibility(bindings, i);
