@@ -37,7 +37,7 @@ const char* family_of(Truth truth) {
 
 std::string view_of(const Run& run) {
   return std::to_string(run.width) + "x" + std::to_string(run.height) + " " +
-         std::to_string(run.light_samples) + " " + name_of(run.truth);
+         std::to_string(run.light_samples) + " " + name_of(run.truth) + " " + run.view.text();
 }
 
 json asked(const Run& run, const techniques::Resolved& technique) {
@@ -112,6 +112,7 @@ std::shared_ptr<const Scene> Engine::scene(const std::string& name) {
     scene_ = scenes::load(name, options_.data);
     scene_hash_ = scenes::content_hash(*scene_);
     scene_name_ = name;
+    changed_.clear();
     judges_.clear();
     baselines_.clear();
   }
@@ -133,6 +134,10 @@ json Engine::key_of(const Run& run, const techniques::Resolved& technique) {
               {"run_ms", options_.timing.run_ms},
               {"picture", run.picture},
               {"truth", name_of(run.truth)}};
+  // Runs that change nothing keep the keys that they had before scenes could be changed.
+  if (!run.view.text().empty()) key["view"] = run.view.text();
+  if (!run.hard_lights.empty()) key["hard_lights"] = run.hard_lights;
+  if (run.idle_casters) key["idle_casters"] = true;
   if (run.truth != Truth::none)
     key["truth_version"] = technique_version(technique_of_family(family_of(run.truth)).id);
   return key;
@@ -154,9 +159,26 @@ json Engine::measure(const Run& run) {
   return row;
 }
 
+std::shared_ptr<const Scene> Engine::scene_for(const Run& run) {
+  const auto plain = scene(run.scene);
+  std::string what = run.view.text();
+  for (const std::string& light : run.hard_lights) what += " hard " + light;
+  if (what.empty()) return plain;
+  auto& kept = changed_[what];
+  if (!kept) {
+    Scene changed = seen_from(*plain, run.view);
+    for (Light& light : changed.lights)
+      if (run.hard_lights.contains(light.name)) light.extent = {};
+    kept = std::make_shared<const Scene>(std::move(changed));
+  }
+  return kept;
+}
+
 RenderRequest Engine::request_of(const Run& run, const techniques::Resolved& technique) {
   RenderRequest request;
-  request.scene = scene(run.scene);
+  request.scene = scene_for(run);
+  request.camera = run.view.camera;
+  request.rules.casters = !run.idle_casters;
   request.technique = technique.technique;
   request.parameters = technique.parameters;
   request.width = run.width;
@@ -166,12 +188,18 @@ RenderRequest Engine::request_of(const Run& run, const techniques::Resolved& tec
   return request;
 }
 
+RenderRequest Engine::truth_of(const Run& run) {
+  Run truth = run;
+  truth.hard_lights.clear();
+  truth.idle_casters = false;
+  return request_of(truth, techniques::resolve(technique_of_family(family_of(run.truth)).id));
+}
+
 const Engine::Judge& Engine::judge_of(const Run& run) {
   const auto [place, fresh] = judges_.try_emplace(view_of(run));
   if (!fresh) return place->second;
   try {
-    const RenderResult drawn = renderer_.render(
-        request_of(run, techniques::resolve(technique_of_family(family_of(run.truth)).id)));
+    const RenderResult drawn = renderer_.render(truth_of(run));
     place->second = {drawn.picture, drawn.visibility};
   } catch (...) {
     judges_.erase(place);
@@ -203,6 +231,7 @@ json Engine::measure_now(const Run& run, const techniques::Resolved& technique) 
     const RenderResult drawn = timer_.time(request_of(run, technique));
     alone.reset();
     add_cost(row, drawn.cost);
+    row["notes"] = drawn.notes;
     const double none_ms = is_baseline(run) ? drawn.cost.median_ms : before.ms;
     row["settled"] = drawn.cost.settled && before.settled;
     row["none_ms"] = none_ms;

@@ -7,11 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "experiments/engine/results.h"
 #include "experiments/engine/timing.h"
+#include "experiments/engine/view.h"
 #include "renderer/render.h"
 #include "techniques/registry.h"
 
@@ -35,6 +37,10 @@ struct Run {
   std::uint32_t light_samples = 1024;  ///< of the truth, and of techniques that take many
   Truth truth = Truth::none;
   bool picture = false;  ///< keep the picture as a file
+  View view;
+  /// Lights that are drawn without their extents; the truth keeps them.
+  std::set<std::string> hard_lights;
+  bool idle_casters = false;  ///< draw also casters that the plan would leave out
 };
 
 struct EngineOptions {
@@ -55,7 +61,7 @@ class Engine {
 
   /// The run's result: what was asked for (scene, technique, ...), `status` done or failed,
   /// `error`, frame_ms, p95_ms, spread, frames, settled, none_ms, over_none, create_ms,
-  /// memory_bytes, counters, `passes`, and against a truth rms_y, flip, visibility_rms,
+  /// memory_bytes, counters, `passes`, `notes`, and against a truth rms_y, flip, visibility_rms,
   /// false_shadow, missing_shadow. A technique that refuses the scene is a result too. Throws Error
   /// for scenes and techniques that there are not, and where the device fails.
   nlohmann::json measure(const Run& run);
@@ -82,6 +88,7 @@ class Engine {
   nlohmann::json key_of(const Run& run, const techniques::Resolved& technique);
   nlohmann::json measure_now(const Run& run, const techniques::Resolved& technique);
   RenderRequest request_of(const Run& run, const techniques::Resolved& technique);
+  RenderRequest truth_of(const Run& run);
   const Judge& judge_of(const Run& run);
   const Baseline& baseline_of(const Run& run);
 
@@ -93,6 +100,10 @@ class Engine {
   std::string scene_name_;
   std::shared_ptr<const Scene> scene_;
   std::string scene_hash_;
+  /// The scene at hand as runs change it, by what they change: drawn ones stay uploaded.
+  std::map<std::string, std::shared_ptr<const Scene>> changed_;
+  std::shared_ptr<const Scene> scene_for(const Run& run);
+
   std::map<std::string, Judge> judges_;  ///< of the scene at hand, by view
   std::map<std::string, Baseline> baselines_;
 };

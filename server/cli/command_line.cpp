@@ -67,6 +67,7 @@ int run(int argc, const char* const* argv) {
   add_demo_command(app, session);
   add_stability_command(app, session);
   add_experiment_commands(app, session);
+  add_recommend_command(app, session);
   add_data_commands(app, session);
 
   std::vector<std::string> arguments(argv + 1, argv + argc);

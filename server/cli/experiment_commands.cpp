@@ -1,35 +1,24 @@
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "experiments/claims/run.h"
-#include "experiments/engine/progress_file.h"
 #include "experiments/sweep/sweep.h"
 #include "experiments/tradeoff/tradeoff.h"
 #include "renderer/error.h"
-#include "server/cli/progress.h"
+#include "server/cli/experiment_options.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
-#include "server/jobs/device_lock.h"
 
 namespace penumbra::server::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using experiments::parts_of;
 
-/// How long a run waits for others that draw on the device, seconds: there are thousands of runs.
-constexpr double patience_s = 2.0;
-
-struct Options {
+struct Options : ExperimentOptions {
   std::string scenes;
   std::string techniques;
   std::string sizes;
-  fs::path out;
-  fs::path data;
-  std::string device;
-  double run_ms = experiments::TimingBudget{}.run_ms;
   std::uint32_t light_samples = 256;
   bool errors = false;
   bool bias = false;
@@ -39,30 +28,6 @@ struct Options {
     command.add_option("--light-samples", light_samples, "Light points of the reference")
         ->check(CLI::Range(1u, RenderLimits::max_light_samples))
         ->capture_default_str();
-  }
-
-  /// What every experiment takes.
-  void add_common_to(CLI::App& command) {
-    command.add_option("--out", out, "Folder of results, figures and report; made if not there")
-        ->required();
-    command.add_option("--data", data, "Folder of imported scenes");
-    command.add_option("--device", device, "Vulkan device: part of its name, or its index");
-    command
-        .add_option("--run-ms", run_ms, "Frames are timed for about so long a run, milliseconds")
-        ->check(CLI::Range(1.0, 60000.0))
-        ->capture_default_str();
-  }
-
-  experiments::EngineOptions engine() const {
-    experiments::EngineOptions engine;
-    engine.folder = out;
-    engine.data = data;
-    engine.device = device;
-    engine.timing.run_ms = run_ms;
-    engine.alone = [] {
-      return std::make_shared<DeviceLock>(DeviceLock::Mode::measure, patience_s);
-    };
-    return engine;
   }
 };
 
@@ -76,24 +41,6 @@ std::vector<std::uint32_t> sizes_of(const std::string& list) {
     sizes.push_back(size);
   }
   return sizes;
-}
-
-/// A list that was given must name something: "," is a slip, not the default.
-std::vector<std::string> list_of(const std::string& flag, const std::string& text) {
-  auto parts = parts_of(text);
-  if (!text.empty() && parts.empty()) throw bad_value(flag, "--" + flag + " names nothing");
-  return parts;
-}
-
-std::function<void(const experiments::Progress&)> shown(Progress& bar,
-                                                        experiments::ProgressFile& file) {
-  return [&bar, &file](const experiments::Progress& now) {
-    file.show(now);
-    if (now.total == 0) return;
-    std::string text = std::to_string(now.done) + " of " + std::to_string(now.total);
-    if (now.left_s) text += ", " + std::to_string(std::lround(*now.left_s)) + " s left";
-    bar.show(static_cast<double>(now.done) / static_cast<double>(now.total), text + " " + now.what);
-  };
 }
 
 int finish(const Session& session, const Options& options, const nlohmann::json& summary) {
@@ -148,10 +95,10 @@ int run_tradeoff(const Session& session, const Options& options) {
 }
 
 struct ClaimsOptions {
-  Options common;
+  ExperimentOptions common;
   std::string only;
   bool quick = false;
-  fs::path page;
+  std::filesystem::path page;
 };
 
 int run_claims(const Session& session, const ClaimsOptions& given) {

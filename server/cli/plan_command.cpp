@@ -22,7 +22,8 @@ std::string plan_text(const json& plan) {
                line.at("reason"), line.at("bytes") == 0 ? "" : mebibytes(line.at("bytes"))});
   const json& bytes = plan.at("bytes");
   return table.text(true) + "\nof the scene, " + mebibytes(bytes.at("kept")) +
-         " MiB go to the device and " + mebibytes(bytes.at("dropped")) + " MiB do not\n";
+         " MiB go to the device and " + mebibytes(bytes.at("dropped")) +
+         " MiB do not; the technique adds at least " + mebibytes(bytes.at("technique")) + " MiB\n";
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ void add_data_commands(CLI::App& app, Session& session);       // backup, restor
 
 /// claims, sweep, tradeoff
 void add_experiment_commands(CLI::App& app, Session& session);
+void add_recommend_command(CLI::App& app, Session& session);  // recommend
 
 /// Arguments with the environment (PENUMBRA_NAME) and the file of --config put in where no flag
 /// says otherwise. Throws bad_value for unknown keys.

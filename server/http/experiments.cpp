@@ -42,7 +42,7 @@ void get_experiments(Call& call) {
   json list = json::array();
   for (const auto& state : call.service.experiments.list())
     list.push_back(body_of_experiment(state));
-  send_json(call.response, 200, {{"experiments", list}});
+  send_json(call.response, 200, {{"experiments", list}, {"kinds", experiment_kinds()}});
 }
 
 void get_experiment(Call& call) {

@@ -30,6 +30,7 @@ struct Key {
 };
 struct Kind {
   const char* name;
+  const char* title;  ///< as people choose it
   std::vector<Key> keys;
   bool imports = true;  ///< whether it takes the folder of imported scenes
 };
@@ -37,6 +38,7 @@ struct Kind {
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {"sweep",
+       "Cost over scenes and sizes",
        {{"scenes", "--scenes", Form::list},
         {"techniques", "--techniques", Form::list},
         {"sizes", "--sizes", Form::list},
@@ -44,17 +46,29 @@ const std::vector<Kind>& kinds() {
         {"light_samples", "--light-samples", Form::number},
         {"errors", "--errors", Form::flag}}},
       {"tradeoff",
+       "Error against time",
        {{"scene", "", Form::scene},
         {"techniques", "--techniques", Form::list},
         {"size", "--size", Form::number},
         {"run_ms", "--run-ms", Form::number},
         {"light_samples", "--light-samples", Form::number},
         {"bias", "--bias", Form::flag}}},
+      {"recommend",
+       "Which technique for a scene",
+       {{"scene", "", Form::scene},
+        {"budget_ms", "--budget-ms", Form::number},
+        {"memory_bytes", "--memory-bytes", Form::number},
+        {"objective", "--objective", Form::text},
+        {"size", "--size", Form::number},
+        {"run_ms", "--run-ms", Form::number},
+        {"light_samples", "--light-samples", Form::number}}},
       {"claims",
+       "What was published",
        {{"only", "--only", Form::list},
         {"quick", "--quick", Form::flag},
         {"run_ms", "--run-ms", Form::number}}},
       {"stability",
+       "Where numbers break",
        {{"techniques", "--techniques", Form::list}, {"axes", "--axes", Form::list}},
        false}};
   return all;
@@ -129,6 +143,21 @@ bool wait_for(ChildProcess& child, const std::function<bool()>& goes_on, std::st
 }
 
 }  // namespace
+
+json experiment_kinds() {
+  json list = json::array();
+  for (const Kind& kind : kinds()) {
+    json keys = json::array();
+    for (const Key& key : kind.keys)
+      keys.push_back({{"name", key.name},
+                      {"form", key.form == Form::flag     ? "flag"
+                               : key.form == Form::number ? "number"
+                                                          : "text"},
+                      {"required", key.form == Form::scene}});
+    list.push_back({{"kind", kind.name}, {"title", kind.title}, {"keys", keys}});
+  }
+  return list;
+}
 
 std::vector<std::string> experiment_arguments(const json& request) {
   if (!request.is_object()) throw bad_value("body", "must be an object");

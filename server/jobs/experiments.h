@@ -36,6 +36,10 @@ struct ExperimentState {
   bool over() const { return status != "queued" && status != "running"; }
 };
 
+/// Every kind of experiment, for forms: [{"kind", "title", "keys": [{"name", "form",
+/// "required"}]}]; form is text, number or flag.
+nlohmann::json experiment_kinds();
+
 /// The arguments of `penumbra` for a request {"kind", ...}: its kind, then options as on the
 /// command line; lists may be arrays. Throws bad_value naming the field. Scenes are names, never
 /// paths: what reaches the server must not read its files.

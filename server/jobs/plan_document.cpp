@@ -8,7 +8,17 @@ namespace {
 
 using nlohmann::json;
 
+/// What the technique allocates for a light, as far as its size follows from parameters alone.
+std::uint64_t bytes_of(const Requirements& needs) {
+  std::uint64_t bytes = 0;
+  for (const MemoryNeed& need : needs.memory) bytes += need.bytes;
+  return bytes;
+}
+
 json light_to_json(const Light& light, bool kept, const Requirements& needs) {
+  json memory = json::array();
+  for (const MemoryNeed& need : needs.memory)
+    memory.push_back({{"name", need.name}, {"bytes", need.bytes}});
   return {{"light", light.name},
           {"kept", kept},
           {"stencil", needs.stencil},
@@ -16,7 +26,8 @@ json light_to_json(const Light& light, bool kept, const Requirements& needs) {
           {"acceleration_structure", needs.acceleration_structure},
           {"light_points", needs.light_points},
           {"shade_each_point", needs.shade_each_point},
-          {"random_points", needs.random_points}};
+          {"random_points", needs.random_points},
+          {"memory", memory}};
 }
 
 }  // namespace
@@ -30,7 +41,7 @@ json plan_document(const CanonicalRequest& canonical) {
                 {"reason", ""},
                 {"lights", json::array()},
                 {"lines", json::array()},
-                {"bytes", {{"kept", 0}, {"dropped", 0}}}};
+                {"bytes", {{"kept", 0}, {"dropped", 0}, {"technique", 0}}}};
   Plan plan;
   try {
     plan =
@@ -47,6 +58,9 @@ json plan_document(const CanonicalRequest& canonical) {
         light_to_json(request.scene->lights[i], plan.lights[i], plan.needs[i]));
   std::uint64_t kept = 0;
   std::uint64_t dropped = 0;
+  std::uint64_t technique = 0;
+  for (std::size_t i = 0; i < plan.lights.size(); ++i)
+    if (plan.lights[i]) technique += bytes_of(plan.needs[i]);
   for (const PlanLine& line : plan.lines) {
     document["lines"].push_back({{"rule", line.rule},
                                  {"subject", line.subject},
@@ -55,7 +69,7 @@ json plan_document(const CanonicalRequest& canonical) {
                                  {"bytes", line.bytes}});
     (line.kept ? kept : dropped) += line.bytes;
   }
-  document["bytes"] = {{"kept", kept}, {"dropped", dropped}};
+  document["bytes"] = {{"kept", kept}, {"dropped", dropped}, {"technique", technique}};
   return document;
 }
 

@@ -74,6 +74,8 @@ TEST_F(ExperimentsTest, refuse_files_options_and_keys_that_there_are_not) {
       {{{"kind", "sweep"}, {"sizes", json::array()}}, "sizes"},
       {{{"kind", "sweep"}, {"errors", "yes"}}, "errors"},
       {{{"kind", "claims"}, {"page", "elsewhere"}}, "page"},
+      {{{"kind", "recommend"}}, "scene"},
+      {{{"kind", "recommend"}, {"scene", "boxes"}, {"budget_ms", "much"}}, "budget_ms"},
       {{{"kind", "tradeoff"}}, "scene"},
       {{{"kind", "tradeoff"}, {"scene", "../x"}}, "scene"}};
   for (const auto& [request, field] : cases) {
@@ -94,6 +96,23 @@ TEST_F(ExperimentsTest, push_techniques_to_where_they_break) {
       researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/results.csv");
   EXPECT_EQ(table->status, 200);
   EXPECT_THAT(table->body, HasSubstr("shadow-map,small-picture,"));
+}
+
+TEST_F(ExperimentsTest, recommend_a_technique_for_a_scene) {
+  const json asked = {{"kind", "recommend"}, {"scene", "sweep:1x100x1"}, {"size", 32},
+                      {"run_ms", 5},         {"light_samples", 16},      {"memory_bytes", 100000}};
+  const json state = body_of(start(asked), 202, "Experiment");
+  ASSERT_EQ(over(state["id"])["status"], "done");
+  const auto report =
+      researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/report.html");
+  ASSERT_EQ(report->status, 200);
+  EXPECT_THAT(report->body, HasSubstr("Recommendation"));
+  // Its kind is among those that a form offers, with what it needs.
+  const json list = body_of(researcher->Get("/api/v1/experiments"), 200, "ExperimentList");
+  const auto kind = std::find_if(list["kinds"].begin(), list["kinds"].end(),
+                                 [](const json& each) { return each["kind"] == "recommend"; });
+  ASSERT_NE(kind, list["kinds"].end());
+  EXPECT_EQ((*kind)["keys"][0], json({{"name", "scene"}, {"form", "text"}, {"required", true}}));
 }
 
 TEST_F(ExperimentsTest, measure_claims) {
