@@ -130,9 +130,11 @@ json request_from_text(const std::vector<std::pair<std::string, std::string>>& e
   std::set<std::string> seen;
   for (const auto& [name, value] : entries) {
     if (!seen.insert(name).second) throw bad_value(name, name + " is given twice");
-    const auto changes =
-        std::find_if(all_changes().begin(), all_changes().end(),
-                     [&](const Changes& entry) { return name.starts_with(entry.one + "."); });
+    // clang lets no lambda capture a structured binding.
+    const auto names_it = [&text = name](const Changes& entry) {
+      return text.starts_with(entry.one + ".");
+    };
+    const auto changes = std::find_if(all_changes().begin(), all_changes().end(), names_it);
     if (changes != all_changes().end()) {
       add_override(request, changes->what, name.substr(changes->one.size() + 1), value);
       continue;
