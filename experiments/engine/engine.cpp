@@ -188,6 +188,10 @@ RenderRequest Engine::request_of(const Run& run, const techniques::Resolved& tec
   return request;
 }
 
+RenderRequest Engine::request_of(const Run& run) {
+  return request_of(run, techniques::resolve(run.technique, run.parameters));
+}
+
 RenderRequest Engine::truth_of(const Run& run) {
   Run truth = run;
   truth.hard_lights.clear();

@@ -71,6 +71,8 @@ class Engine {
   const DeviceInfo& device() const { return renderer_.device(); }
   /// For pictures that are looked at and not kept.
   Renderer& renderer() { return renderer_; }
+  /// What the run draws, with complete parameters. Throws as `measure` does.
+  RenderRequest request_of(const Run& run);
   /// The scene of that name, kept while it is asked for again.
   std::shared_ptr<const Scene> scene(const std::string& name);
 

@@ -106,16 +106,10 @@ class Bench {
 };
 
 /// Why a candidate cannot draw the scene, told before anything is drawn; empty: it can.
-std::string refusal_of(const Run& run, const std::shared_ptr<const Scene>& scene) {
-  const auto resolved = techniques::resolve(run.technique, run.parameters);
-  RenderRequest request;
-  request.scene = scene;
-  request.technique = resolved.technique;
-  request.width = run.width;
-  request.height = run.height;
-  request.light_samples = run.light_samples;
+std::string refusal_of(Engine& engine, const Run& run) {
+  const RenderRequest request = engine.request_of(run);
   try {
-    requirements_of(request, resolved.parameters);
+    requirements_of(request, request.parameters);
   } catch (const Error& error) {
     return error.what();
   }
@@ -209,7 +203,7 @@ class Search {
     if (choice.candidate.empty())
       throw Error("unsupported", "no technique that was measured draws this scene", "scene");
     json summary = told(choice);
-    summary["savings"] = savings(engine_.scene(options_.scene), bench_.run_of(choice.candidate),
+    summary["savings"] = savings(engine_, bench_.run_of(choice.candidate),
                                  [&](const Run& run) { return bench_.measure(run); });
     return summary;
   }
@@ -221,7 +215,7 @@ class Search {
   std::vector<std::string> drawable(const std::vector<std::string>& names) {
     std::vector<std::string> kept;
     for (const std::string& name : names) {
-      const std::string reason = refusal_of(bench_.run_of(name), engine_.scene(options_.scene));
+      const std::string reason = refusal_of(engine_, bench_.run_of(name));
       if (reason.empty())
         kept.push_back(name);
       else

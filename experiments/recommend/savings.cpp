@@ -38,7 +38,7 @@ json saving(const std::string& what, const std::string& why, const Before& befor
       {"taken", false}};
 }
 
-/// Halves the map until the error passes its bound, the map's least or the device's mind.
+/// Halves the map until the error passes its bound, the map's least or what the device takes.
 void add_smaller_maps(json& list, const Run& pick, const Before& before,
                       const std::function<json(const Run&)>& measure) {
   const auto resolved = techniques::resolve(pick.technique, pick.parameters);
@@ -75,21 +75,13 @@ void add_hard_lights(json& list, const Scene& scene, const Run& pick, const Befo
 }
 
 /// What the plan leaves out, and what drawing it would cost.
-void add_idle_casters(json& list, const std::shared_ptr<const Scene>& scene, const Run& pick,
-                      const Before& before, const std::function<json(const Run&)>& measure) {
-  const auto resolved = techniques::resolve(pick.technique, pick.parameters);
-  RenderRequest request;
-  request.scene = scene;
-  request.technique = resolved.technique;
-  request.width = pick.width;
-  request.height = pick.height;
-  request.light_samples = pick.light_samples;
-  const auto boxes = instance_boxes(*scene);
-  const Plan with = make_plan(request, resolved.parameters, boxes);
+void add_idle_casters(json& list, RenderRequest request, const Run& pick, const Before& before,
+                      const std::function<json(const Run&)>& measure) {
+  const auto boxes = instance_boxes(*request.scene);
+  const Plan with = make_plan(request, request.parameters, boxes);
   std::size_t idle = 0;
-  double bytes = 0.0;
   for (std::size_t i = 0; i < with.instances.size(); ++i)
-    if (!with.instances[i].casts && scene->instances[i].casts_shadow) ++idle;
+    if (!with.instances[i].casts && request.scene->instances[i].casts_shadow) ++idle;
   if (idle == 0) return;
   request.rules.casters = false;
   const auto kept_bytes = [](const Plan& plan) {
@@ -98,7 +90,7 @@ void add_idle_casters(json& list, const std::shared_ptr<const Scene>& scene, con
       sum += line.kept ? static_cast<double>(line.bytes) : 0.0;
     return sum;
   };
-  bytes = kept_bytes(make_plan(request, resolved.parameters, boxes)) - kept_bytes(with);
+  const double bytes = kept_bytes(make_plan(request, request.parameters, boxes)) - kept_bytes(with);
   Run run = pick;
   run.idle_casters = true;
   run.name = pick.name + ", all casters";
@@ -117,16 +109,16 @@ void add_idle_casters(json& list, const std::shared_ptr<const Scene>& scene, con
 
 }  // namespace
 
-json savings(const std::shared_ptr<const Scene>& scene, const Run& pick,
-             const std::function<json(const Run&)>& measure) {
+json savings(Engine& engine, const Run& pick, const std::function<json(const Run&)>& measure) {
   const json row = measure(pick);
   const double error = number_of(row, "visibility_rms");
   const Before before{number_of(row, "frame_ms"), number_of(row, "memory_bytes"), error,
                       std::max((1.0 + granted_share) * error, error + granted_least)};
   json list = json::array();
   add_smaller_maps(list, pick, before, measure);
-  add_hard_lights(list, *scene, pick, before, measure);
-  add_idle_casters(list, scene, pick, before, measure);
+  const RenderRequest request = engine.request_of(pick);
+  add_hard_lights(list, *request.scene, pick, before, measure);
+  add_idle_casters(list, request, pick, before, measure);
   return list;
 }
 

@@ -15,7 +15,7 @@ inline constexpr double granted_least = 0.002;
 /// other while the error stays within what is granted; each soft light drawn hard; and casters that
 /// the plan leaves out already. A list of {"what", "why", "frame_ms", "saved_ms", "saved_bytes",
 /// "error", "worth_it", "taken"}: error is visibility_rms; taken says that every render does so.
-nlohmann::json savings(const std::shared_ptr<const Scene>& scene, const Run& pick,
+nlohmann::json savings(Engine& engine, const Run& pick,
                        const std::function<nlohmann::json(const Run&)>& measure);
 
 }  // namespace penumbra::experiments::recommend

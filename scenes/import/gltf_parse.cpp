@@ -151,9 +151,9 @@ std::string uri_of(const json& entry, const std::string& where) {
   return *uri;
 }
 
-/// Takes the place of bytes in the document that the parser reads.
-const json placeholder_buffer = {{"byteLength", 1},
-                                 {"uri", "data:application/octet-stream;base64,AA=="}};
+/// What the parser reads in place of a buffer whose bytes were taken.
+const json one_byte_buffer = {{"byteLength", 1},
+                              {"uri", "data:application/octet-stream;base64,AA=="}};
 
 /// Bytes of the document's buffers, which are replaced in it. Without one of them there is nothing
 /// to draw, so that one that cannot be read is refused.
@@ -176,7 +176,7 @@ std::vector<std::string> take_buffers(json& document, std::string binary, const 
                          where);
       buffers.push_back(read_bytes(file));
     }
-    (*list)[i] = placeholder_buffer;
+    (*list)[i] = one_byte_buffer;
   }
   return buffers;
 }

@@ -259,7 +259,7 @@ std::multimap<std::string, std::string> rows_of(const std::string& page) {
 }
 
 const std::multimap<std::string, std::string>& shared_rows() {
-  static const auto rows = rows_of(text_of_page("techniques/shared-parameters.md"));
+  static const auto rows = rows_of(text_of_page("techniques/common-parameters.md"));
   return rows;
 }
 
