@@ -143,15 +143,18 @@ std::string WideTable::header() const {
   return line_of(columns());
 }
 
-void WideTable::append(const std::vector<ResponseRow>& rows, std::string& text) const {
-  if (rows.empty()) return;
+void WideTable::append(const std::vector<std::vector<ResponseRow>>& answered,
+                       std::string& text) const {
+  if (answered.empty()) return;
   std::map<std::string, std::string> values;
-  for (const ResponseRow& row : rows) {
-    const std::string page = row.scene + (row.repeat > 0 ? ".again" : "");
-    values[page + "." + row.technique] = figures::number_text(row.rank, 1);
-    if (row.difficulty) values[page + ".difficulty"] = std::to_string(*row.difficulty);
+  for (const auto& rows : answered) {
+    for (const ResponseRow& row : rows) {
+      const std::string page = row.scene + (row.repeat > 0 ? ".again" : "");
+      values[page + "." + row.technique] = figures::number_text(row.rank, 1);
+      if (row.difficulty) values[page + ".difficulty"] = std::to_string(*row.difficulty);
+    }
   }
-  const ResponseRow& first = rows.front();
+  const ResponseRow& first = answered.front().front();
   std::vector<std::string> cells{first.participant, truth(first.included),
                                  truth(first.page && first.page->participant_completed),
                                  first.flags};

@@ -35,8 +35,8 @@ class WideTable {
   explicit WideTable(const Study& study);
   std::vector<Column> columns() const;
   std::string header() const;
-  /// Rows of one participant.
-  void append(const std::vector<ResponseRow>& rows, std::string& text) const;
+  /// Rows of one participant, by page; no page is empty.
+  void append(const std::vector<std::vector<ResponseRow>>& answered, std::string& text) const;
 
  private:
   struct PageColumns {

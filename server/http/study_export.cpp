@@ -23,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-using Pages = std::vector<std::vector<study::ResponseRow>>;
-
 /// Rows of one person by page, in the order of the pages: of the answers that count, or of those
 /// that were replaced.
 Pages pages_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
@@ -288,23 +286,31 @@ std::string StudyExport::names_of_flags(const std::string& pseudonym) const {
   return found == flags.end() ? "" : flag_names(found->second);
 }
 
-void StudyExport::each(const TakePerson& take) {
-  participants.each(frozen->study.id, frozen->version, [&](const storage::ParticipantData& person) {
-    const bool test = person.participant.test;
-    auto pages = test ? Pages{} : pages_of(*frozen, person, person.answers);
-    const auto names = names_of_flags(person.participant.pseudonym);
-    for (auto& page : pages)
+void StudyExport::each(bool documents, const std::function<void(const Person&)>& take) {
+  const auto make = [&](storage::ParticipantData&& stored) {
+    Person person{std::move(stored), {}, {}};
+    if (documents && !person.data.participant.test)
+      person.document = scenes::json_text(person_json(*frozen, person.data));
+    return person;
+  };
+  const auto add_pages = [&](Person& person) {
+    if (!person.data.participant.test)
+      person.pages = pages_of(*frozen, person.data, person.data.answers);
+    const auto names = names_of_flags(person.data.participant.pseudonym);
+    for (auto& page : person.pages)
       for (auto& row : page) row.flags = names;
-    take(person, pages);
-  });
+    take(person);
+    person = {};  // a portion's rows are many times its answers
+  };
+  participants.each(frozen->study.id, frozen->version, make, add_pages);
 }
 
 void StudyExport::write_responses(const fs::path& file) {
   find_flags();
   PieceWriter responses(file);
   responses.add(study::response_header());
-  each([&](const auto&, const auto& pages) {
-    for (const auto& page : pages)
+  each(false, [&](const Person& person) {
+    for (const auto& page : person.pages)
       for (const auto& row : page) study::append_response(row, responses.text());
   });
   responses.finish();
@@ -340,21 +346,21 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   documents.add("{\"study\": " + json(frozen->study.id).dump() +
                 ", \"study_hash\": " + json(frozen->hash).dump() + ", \"participants\": [");
   bool first = true;
-  each([&](const storage::ParticipantData& person, const auto& pages) {
-    people_table.append(participant_row(*frozen, person, checks_of(*frozen, person, entries),
-                                        names_of_flags(person.participant.pseudonym)),
-                        people.text());
-    if (person.participant.test) return;
-    documents.add((first ? "\n" : ",\n") + scenes::json_text(person_json(*frozen, person)));
+  each(true, [&](const Person& person) {
+    const auto& who = person.data.participant;
+    people_table.append(
+        participant_row(*frozen, person.data, checks_of(*frozen, person.data, entries),
+                        names_of_flags(who.pseudonym)),
+        people.text());
+    if (who.test) return;
+    documents.add((first ? "\n" : ",\n") + person.document);
     first = false;
-    std::vector<study::ResponseRow> all;
-    for (const auto& page : pages) {
+    for (const auto& page : person.pages) {
       for (const auto& row : page) study::append_response(row, responses.text());
       pairs_table.append(page, pairs.text());
-      all.insert(all.end(), page.begin(), page.end());
     }
-    wide_table.append(all, wide.text());
-    for (const auto& page : pages_of(*frozen, person, person.replaced))
+    wide_table.append(person.pages, wide.text());
+    for (const auto& page : pages_of(*frozen, person.data, person.data.replaced))
       for (const auto& row : page) study::append_response(row, earlier.text());
   });
   documents.add("\n]}\n");

@@ -35,6 +35,9 @@ class TemporaryFile {
   std::filesystem::path file;
 };
 
+/// Rows of one person by page.
+using Pages = std::vector<std::vector<study::ResponseRow>>;
+
 /// One published version of a study with its answers.
 class StudyExport {
  public:
@@ -57,12 +60,17 @@ class StudyExport {
                      const std::vector<storage::Damage>& damage = {});
 
  private:
-  using TakePerson = std::function<void(const storage::ParticipantData&,
-                                        const std::vector<std::vector<study::ResponseRow>>&)>;
+  /// A person with the rows of the answers that count, by page; none of a test.
+  struct Person {
+    storage::ParticipantData data;
+    Pages pages;
+    std::string document;  ///< of responses.json, where it is wanted
+  };
 
   void gather();
   void find_flags();
-  void each(const TakePerson& take);
+  /// Calls `take` for everybody, with documents where `documents`.
+  void each(bool documents, const std::function<void(const Person&)>& take);
   std::string names_of_flags(const std::string& pseudonym) const;
   void add_evidence(nlohmann::json& flag) const;
   nlohmann::json flags_of_excluded();
@@ -81,7 +89,7 @@ class StudyExport {
     int reference_last = 0;  ///< pages on which the true picture has the worst place
     int turned_round = 0;    ///< pages on which the order was turned round before it was sent
   };
-  static InversionEvidence evidence_of(const std::vector<std::vector<study::ResponseRow>>& pages);
+  static InversionEvidence evidence_of(const Pages& pages);
 
   std::map<std::string, InversionEvidence> evidence;  ///< by pseudonym
   study::Attendance attendance;

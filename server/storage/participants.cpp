@@ -1,7 +1,5 @@
 #include "server/storage/participants.h"
 
-#include <future>
-
 #include "renderer/error.h"
 #include "server/files/digest.h"
 #include "server/storage/participant_rows.h"
@@ -342,45 +340,41 @@ bool Participants::exclude(const std::string& study, const std::string& pseudony
   });
 }
 
+std::vector<ParticipantData> Participants::portion(const std::string& study, int version,
+                                                   std::optional<std::int64_t>& after) {
+  constexpr int most = 100;
+  int seen = 0;
+  auto people = database.read([&](Connection& connection) {
+    SQLite::Statement query(connection,
+                            std::string("SELECT ") + participant_columns +
+                                " FROM checked_participants WHERE study = ? AND version = ? "
+                                "AND id > ? ORDER BY id LIMIT ?");
+    query.bind(1, study);
+    query.bind(2, version);
+    query.bind(3, after.value());
+    query.bind(4, most);
+    std::vector<ParticipantData> found;
+    while (query.executeStep()) {
+      ++seen;
+      after = query.getColumn(0).getInt64();
+      if (const auto record = participant_of_row(database, query))
+        found.push_back({*record, {}, {}, {}});
+    }
+    for (auto& person : found) {
+      person.answers = answers_of(database, connection, person.participant.key, true);
+      person.replaced = answers_of(database, connection, person.participant.key, false);
+      person.exclusions = exclusions_of(database, connection, person.participant.key);
+    }
+    return found;
+  });
+  if (seen < most) after.reset();
+  return people;
+}
+
 void Participants::each(const std::string& study, int version,
                         const std::function<void(const ParticipantData&)>& take) {
-  constexpr int portion = 100;
-  std::int64_t last = 0;
-  int seen = 0;
-  const auto read_portion = [&] {
-    seen = 0;
-    return database.read([&](Connection& connection) {
-      SQLite::Statement query(connection,
-                              std::string("SELECT ") + participant_columns +
-                                  " FROM checked_participants WHERE study = ? AND version = ? "
-                                  "AND id > ? ORDER BY id LIMIT ?");
-      query.bind(1, study);
-      query.bind(2, version);
-      query.bind(3, last);
-      query.bind(4, portion);
-      std::vector<ParticipantData> found;
-      while (query.executeStep()) {
-        ++seen;
-        last = query.getColumn(0).getInt64();
-        if (const auto record = participant_of_row(database, query))
-          found.push_back({*record, {}, {}, {}});
-      }
-      for (auto& person : found) {
-        person.answers = answers_of(database, connection, person.participant.key, true);
-        person.replaced = answers_of(database, connection, person.participant.key, false);
-        person.exclusions = exclusions_of(database, connection, person.participant.key);
-      }
-      return found;
-    });
-  };
-  // The next portion is read while this one is taken.
-  auto people = read_portion();
-  while (seen == portion) {
-    auto next = std::async(std::launch::async, read_portion);
-    for (const auto& person : people) take(person);
-    people = next.get();
-  }
-  for (const auto& person : people) take(person);
+  each(
+      study, version, [](ParticipantData&& person) { return std::move(person); }, take);
 }
 
 bool Participants::is_full(const std::string& study, int version, std::uint32_t quota) {

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "server/storage/database.h"
@@ -105,6 +107,25 @@ class Participants {
   void each(const std::string& study, int version,
             const std::function<void(const ParticipantData&)>& take);
 
+  /// The same with what `make` makes of a ParticipantData. It runs in another thread, while `take`
+  /// takes what was made of the portion before.
+  template <class Make, class Take>
+  void each(const std::string& study, int version, const Make& make, const Take& take) {
+    std::optional<std::int64_t> after = 0;
+    const auto next_portion = [&] {
+      std::vector<std::invoke_result_t<Make, ParticipantData&&>> made;
+      for (auto& person : portion(study, version, after)) made.push_back(make(std::move(person)));
+      return made;
+    };
+    auto made = next_portion();
+    while (after) {
+      auto next = std::async(std::launch::async, next_portion);
+      for (auto& one : made) take(one);
+      made = next.get();
+    }
+    for (auto& one : made) take(one);
+  }
+
   /// Answers of completed and started people (no tests) per page position is of no use, since
   /// positions differ; so per participant: place and positions answered.
   struct Progress {
@@ -121,6 +142,10 @@ class Participants {
   std::map<std::string, int> entries_by_person(const std::string& study);
 
  private:
+  /// The next people whose keys lie beyond `after`, which is moved on; no value after the last.
+  std::vector<ParticipantData> portion(const std::string& study, int version,
+                                       std::optional<std::int64_t>& after);
+
   Database& database;
 };
 

@@ -74,7 +74,7 @@ TEST(Wide, HasARowPerPersonAndTheRankOfEveryPicture) {
       simulate_responses(study, simulate_people(1, 0, 0, 3), default_preferences(study), 3);
   const WideTable table(study);
   std::string text = table.header();
-  table.append(rows, text);
+  table.append({rows}, text);
   const auto records = cells_of(text);
   ASSERT_EQ(records.size(), 2u);
   ASSERT_EQ(records[0].size(), records[1].size());
