@@ -1,10 +1,8 @@
 // Runs the built program as a person or a script would.
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -12,46 +10,15 @@
 #include "scenes/library.h"
 #include "scenes/picture_io.h"
 #include "server/files/durable_file.h"
-#include "server/storage/data_folder.h"
-#include "server/storage/studies.h"
 #include "techniques/registry.h"
-#include "tests/jobs/temporary_folder.h"
+#include "tests/cli/program.h"
 
+namespace penumbra {
 namespace {
 
 using nlohmann::json;
-using penumbra::server::read_whole;
+using server::read_whole;
 using testing::HasSubstr;
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string err;
-};
-
-class ProgramTest : public testing::Test {
- protected:
-  /// Runs `penumbra ARGUMENTS` in a folder of its own; references stay in one cache for all.
-  Outcome run(const std::string& arguments, const std::string& environment = "") {
-    const std::string err = (folder.path() / "stderr").string();
-    const std::string command = "cd '" + folder.path().string() + "' && " + environment +
-                                " XDG_CACHE_HOME='" + PENUMBRA_BINARY_DIR + "/test-cache' '" +
-                                PENUMBRA_PROGRAM + "' " + arguments + " 2>'" + err + "'";
-    Outcome outcome;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    char piece[4096];
-    for (std::size_t n = 0; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;)
-      outcome.out.append(piece, n);
-    const int status = ::pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    outcome.err = read_whole(err).value_or("");
-    return outcome;
-  }
-
-  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
-
-  TemporaryFolder folder;
-};
 
 TEST_F(ProgramTest, answers_wrong_usage_with_state_2_and_the_argument_at_fault) {
   const std::vector<std::pair<std::string, std::string>> cases{
@@ -228,6 +195,21 @@ TEST_F(ProgramTest, draws_a_picture_of_the_size_asked_for) {
   for (const float value : visibility.pixels) ASSERT_EQ(value, 1.0f);
 }
 
+TEST_F(ProgramTest, draws_the_end_of_a_path_of_cameras_as_the_camera_there_draws_it) {
+  std::ofstream(path("path.json")) << R"([{"position": [0, 9, 9]}, {"position": [2, 8, 7]}])";
+  const std::string picture = "render boxes pcf --width 24 --height 24 --out ";
+  const Outcome led = run(picture + "led.exr --camera-path path.json");
+  ASSERT_EQ(led.status, 0) << led.err;
+  ASSERT_EQ(run(picture + "put.exr --camera-set main.position=2,8,7").status, 0);
+  ASSERT_EQ(run(picture + "own.exr").status, 0);
+  EXPECT_EQ(read_whole(path("led.exr")), read_whole(path("put.exr")));
+  EXPECT_NE(read_whole(path("led.exr")), read_whole(path("own.exr")));
+  std::ofstream(path("path.json")) << R"([{"position": [2, 8, 7]}, {"field_of_view": 500}])";
+  const Outcome wrong = run(picture + "wrong.exr --camera-path path.json");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("camera_path[1].field_of_view"));
+}
+
 TEST_F(ProgramTest, draws_the_same_bytes_every_time) {
   ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out a.png").status, 0);
   ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out b.png").status, 0);
@@ -320,67 +302,6 @@ TEST_F(ProgramTest, exports_a_scene_that_comes_back_the_same) {
   EXPECT_EQ(run("import half.glb --id boxes --data store").status, 2);
 }
 
-TEST_F(ProgramTest, analyses_answers) {
-  std::ofstream csv(path("r.csv"));
-  csv << "participant,scene,technique,rank_1_is_most_realistic,difficulty_1_hard_to_see_5_easy\n";
-  for (int person = 0; person < 12; ++person)
-    csv << person << ",s,good," << 1 << ",3\n"
-        << person << ",s,bad," << (person == 0 ? 1 : 2) << ",3\n";
-  csv.close();
-  const Outcome outcome = run("statistics r.csv --out results --json");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json scene = json::parse(outcome.out).at("included_sets").at("all").at("scenes").at(0);
-  EXPECT_EQ(scene.at("techniques").at(0).at("technique"), "good");
-  EXPECT_TRUE(std::filesystem::exists(path("results/results.json")));
-}
-
-TEST_F(ProgramTest, reads_what_spreadsheets_write_and_says_so) {
-  std::ofstream csv(path("r.csv"));
-  csv << "participant;scene;technique;rank_1_is_most_realistic;difficulty_1_hard_to_see_5_easy\n";
-  for (int person = 0; person < 4; ++person)
-    csv << person << ";s;PCF 3\xC3\x97"
-        << "3;1,5;3\n"
-        << person << ";s;weich;1,5;3\n";
-  csv.close();
-  const Outcome found = run("statistics r.csv --json");
-  ASSERT_EQ(found.status, 0) << found.err;
-  EXPECT_THAT(json::parse(found.out).at("notes").dump(), HasSubstr("semicolons"));
-  EXPECT_EQ(run("statistics r.csv --separator semicolon").status, 0);
-  const Outcome wrong = run("statistics r.csv --separator tab");
-  EXPECT_EQ(wrong.status, 1);
-  EXPECT_THAT(wrong.err, HasSubstr("separated by tabs it holds `participant;scene;technique"));
-}
-
-TEST_F(ProgramTest, backs_up_verifies_restores_and_exports) {
-  {
-    namespace storage = penumbra::server::storage;
-    const storage::DataFolder owned(path("store"));
-    storage::Database database(path("store/penumbra.sqlite"));
-    storage::Studies studies(database);
-    const auto document =
-        json::parse(*read_whole(std::string(PENUMBRA_SOURCE_DIR) + "/studies/thesis-2007.json"));
-    studies.put_draft("thesis-2007", document, 7, "2026-01-01");
-    studies.start_publishing("thesis-2007", 1, "hash", 0);
-    studies.open("thesis-2007", 1, "2026-01-01");
-  }
-  EXPECT_EQ(run("verify --data store").status, 0);
-  ASSERT_EQ(run("backup --data store --out backup.zip --json").status, 0);
-  EXPECT_EQ(run("verify --data backup.zip").status, 0);
-  ASSERT_EQ(run("restore backup.zip --data again").status, 0);
-  EXPECT_EQ(run("verify --data again").status, 0);
-  const Outcome exported = run("export thesis-2007 --data again --out export.zip --json");
-  ASSERT_EQ(exported.status, 0) << exported.err;
-  EXPECT_GT(json::parse(exported.out).at("bytes").get<int>(), 1000);
-  EXPECT_EQ(run("export nothing --data again --out other.zip").status, 2);
-
-  std::filesystem::remove(path("again/integrity.key"));
-  const Outcome damaged = run("verify --data again --json");
-  EXPECT_EQ(damaged.status, 1);
-  EXPECT_FALSE(json::parse(damaged.out).at("sound").get<bool>());
-  EXPECT_EQ(run("backup --data again --out other.zip").status, 1);
-  EXPECT_EQ(run("verify --data nowhere").status, 2);
-}
-
 TEST_F(ProgramTest, finds_this_machine_able_to_work) {
   const Outcome outcome = run("doctor --json");
   EXPECT_EQ(outcome.status, 0) << outcome.out;
@@ -403,3 +324,4 @@ TEST_F(ProgramTest, takes_options_from_the_environment) {
 }
 
 }  // namespace
+}  // namespace penumbra
