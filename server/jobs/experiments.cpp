@@ -27,6 +27,7 @@ struct Key {
   const char* name;
   const char* flag;
   Form form;
+  const char* example = "";  ///< of a value, shown where people fill it in
 };
 struct Kind {
   const char* name;
@@ -39,37 +40,38 @@ const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {"sweep",
        "Cost over scenes and sizes",
-       {{"scenes", "--scenes", Form::list},
-        {"techniques", "--techniques", Form::list},
-        {"sizes", "--sizes", Form::list},
-        {"run_ms", "--run-ms", Form::number},
-        {"light_samples", "--light-samples", Form::number},
+       {{"scenes", "--scenes", Form::list, "sweep:*x1600x3, boxes"},
+        {"techniques", "--techniques", Form::list, "shadow-map, pcss:map_size=1024"},
+        {"sizes", "--sizes", Form::list, "300, 600"},
+        {"run_ms", "--run-ms", Form::number, "200 of timed frames"},
+        {"light_samples", "--light-samples", Form::number, "256 of the reference"},
         {"errors", "--errors", Form::flag}}},
       {"tradeoff",
        "Error against time",
-       {{"scene", "", Form::scene},
-        {"techniques", "--techniques", Form::list},
-        {"size", "--size", Form::number},
-        {"run_ms", "--run-ms", Form::number},
-        {"light_samples", "--light-samples", Form::number},
+       {{"scene", "", Form::scene, "boxes"},
+        {"techniques", "--techniques", Form::list, "shadow-map, pcss:map_size=1024"},
+        {"size", "--size", Form::number, "256 pixels an edge"},
+        {"run_ms", "--run-ms", Form::number, "200 of timed frames"},
+        {"light_samples", "--light-samples", Form::number, "256 of the reference"},
         {"bias", "--bias", Form::flag}}},
       {"recommend",
        "Which technique for a scene",
-       {{"scene", "", Form::scene},
-        {"budget_ms", "--budget-ms", Form::number},
-        {"memory_bytes", "--memory-bytes", Form::number},
-        {"objective", "--objective", Form::text},
-        {"size", "--size", Form::number},
-        {"run_ms", "--run-ms", Form::number},
-        {"light_samples", "--light-samples", Form::number}}},
+       {{"scene", "", Form::scene, "boxes"},
+        {"budget_ms", "--budget-ms", Form::number, "4.5 a frame"},
+        {"memory_bytes", "--memory-bytes", Form::number, "16777216"},
+        {"objective", "--objective", Form::text, "rms, flip, worst or perceived"},
+        {"size", "--size", Form::number, "256 pixels an edge"},
+        {"run_ms", "--run-ms", Form::number, "200 of timed frames"},
+        {"light_samples", "--light-samples", Form::number, "256 of the reference"}}},
       {"claims",
        "What was published",
-       {{"only", "--only", Form::list},
+       {{"only", "--only", Form::list, "Q05, C23"},
         {"quick", "--quick", Form::flag},
-        {"run_ms", "--run-ms", Form::number}}},
+        {"run_ms", "--run-ms", Form::number, "200 of timed frames"}}},
       {"stability",
        "Where numbers break",
-       {{"techniques", "--techniques", Form::list}, {"axes", "--axes", Form::list}},
+       {{"techniques", "--techniques", Form::list, "shadow-map, pcss:map_size=1024"},
+        {"axes", "--axes", Form::list, "ground, zoom"}},
        false}};
   return all;
 }
@@ -153,7 +155,8 @@ json experiment_kinds() {
                       {"form", key.form == Form::flag     ? "flag"
                                : key.form == Form::number ? "number"
                                                           : "text"},
-                      {"required", key.form == Form::scene}});
+                      {"required", key.form == Form::scene},
+                      {"example", key.example}});
     list.push_back({{"kind", kind.name}, {"title", kind.title}, {"keys", keys}});
   }
   return list;

@@ -112,7 +112,8 @@ TEST_F(ExperimentsTest, recommend_a_technique_for_a_scene) {
   const auto kind = std::find_if(list["kinds"].begin(), list["kinds"].end(),
                                  [](const json& each) { return each["kind"] == "recommend"; });
   ASSERT_NE(kind, list["kinds"].end());
-  EXPECT_EQ((*kind)["keys"][0], json({{"name", "scene"}, {"form", "text"}, {"required", true}}));
+  EXPECT_EQ((*kind)["keys"][0],
+            json({{"name", "scene"}, {"form", "text"}, {"required", true}, {"example", "boxes"}}));
 }
 
 TEST_F(ExperimentsTest, measure_claims) {

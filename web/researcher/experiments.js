@@ -37,7 +37,8 @@ function field(key) {
   if (key.form === "flag")
     return [h("label", { for: id }, h("input", { id, type: "checkbox" }), ` ${label_of(key)}`)];
   const kind = key.form === "number" ? { type: "number", step: "any" } : { type: "text" };
-  return [h("label", { for: id }, label_of(key)), h("input", { id, ...kind, required: key.required })];
+  const hint = key.example ? `such as ${key.example}` : "";
+  return [h("label", { for: id }, label_of(key)), h("input", { id, ...kind, placeholder: hint, required: key.required })];
 }
 
 /** What was filled in, by key; what was left empty takes the program's default. */
@@ -58,7 +59,7 @@ function form_of(kinds, refresh) {
   const kind = h("select", { id: "experiment-kind" },
     kinds.map((each) => h("option", { value: each.kind }, each.title)));
   const keys = () => kinds.find((each) => each.kind === kind.value).keys;
-  const fields = h("div", {});
+  const fields = h("div", { class: "fields" });
   const show = () => fields.replaceChildren(...keys().flatMap(field));
   kind.addEventListener("change", show);
   show();
