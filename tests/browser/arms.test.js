@@ -130,12 +130,14 @@ test("the researcher sees people by arm, and the arms compared", async () => {
   await page.goto(`${server.base}/lab#study/${id}`);
   const arms = page.getByRole("table", { name: "People by arm" });
   await arms.waitFor();
-  assert.deepEqual((await arms.locator("tbody tr").allInnerTexts()).map((row) => row.split("\t")[0]),
-    ["one-is-best", "nine-is-best", "shelves"]);
+  // Text content: the page may put a newer table in place of this one, and what is no longer shown has no laid-out text.
+  assert.deepEqual(await arms.locator("tbody th").allTextContents(), ["one-is-best", "nine-is-best", "shelves"]);
   await page.getByRole("heading", { name: "Ways of giving ranks" }).waitFor();
-  const compared = page.getByRole("table", { name: "Arms", exact: true }).locator("tbody tr");
-  assert.equal(await compared.count(), 3);
-  for (const row of await compared.allInnerTexts()) assert.match(row, /\t1\t0\t100%\t/);
+  const compared = page.getByRole("table", { name: "Arms", exact: true });
+  for (const arm of [1, 2, 3]) {
+    const cells = await compared.locator(`tbody tr:nth-child(${arm}) td`).allTextContents();
+    assert.deepEqual(cells.slice(0, 3), ["1", "0", "100%"]);
+  }
   assert.deepEqual(await violations(page), []);
   await screenshot(page, "arms");
   await page.goto(`${server.base}/lab#people/${id}/1`);
