@@ -103,6 +103,10 @@ bool read_observation(const std::string& key, const json& value, std::size_t slo
     seen.enlargements = read_integer(value, key, 0, max_count);
   else if (key == "flips")
     seen.flips = read_integer(value, key, 0, max_count);
+  else if (key == "turns")
+    seen.turns = read_integer(value, key, 0, max_count);
+  else if (key == "frames_seen")
+    seen.frames_seen = read_integer(value, key, 0, max_count);
   else if (key == "swaps")
     seen.swaps = read_integer(value, key, 0, max_count);
   else if (key == "blurs")

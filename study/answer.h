@@ -22,6 +22,8 @@ struct Observations {
   std::optional<double> total_ms;
   int enlargements = 0;  ///< how often a picture was enlarged
   int flips = 0;         ///< how often two were flipped in place
+  int turns = 0;         ///< how often the view was turned
+  int frames_seen = 0;   ///< views that were seen; 0 where the page has one only
   int swaps = 0;         ///< uses of the button "other way round"; ranks are those after it
   int blurs = 0;         ///< how often the window lost focus
   int load_failures = 0;
@@ -49,9 +51,9 @@ struct Answer {
 ///   shelves      {"0": 0, "1": 2, ...}: each slot's shelf, 0 .. slots - 1    (arm of shelves)
 ///   digits       {"0": 1, "1": 9, ...}: each slot's digit, 1 .. 9            (numeric arm)
 ///   difficulty   1 .. 5, required unless `practice`
-///   active_ms, total_ms, enlargements, flips, swaps, blurs, load_failures, all_same,
-///   order_shown [slot..], window {width, height}, screen {width, height}, device_pixel_ratio,
-///   started_at, answered_at (ISO 8601, the browser's clock)    optional
+///   active_ms, total_ms, enlargements, flips, turns, frames_seen, swaps, blurs, load_failures,
+///   all_same, order_shown [slot..], window {width, height}, screen {width, height},
+///   device_pixel_ratio, started_at, answered_at (ISO 8601, the browser's clock)    optional
 /// Every slot is required. Throws bad_value naming the field: `shelves.3`, `difficulty`, ...
 Answer parse_answer(const nlohmann::json& body, const Arm& arm, std::size_t slots,
                     bool practice = false);

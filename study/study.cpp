@@ -109,6 +109,25 @@ std::optional<Expectation> read_expectation(const json& value, const std::vector
   return expected;
 }
 
+/// The camera of a page whose pictures can be turned.
+std::optional<Orbit> read_orbit(const json& value, const std::vector<Picture>& pictures,
+                                const std::string& path, const std::string& list_path) {
+  if (value.is_null()) return std::nullopt;
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    if (!pictures[i].own.empty())
+      throw bad_value(indexed(list_path, i) + ".picture",
+                      "a picture of your own has one view, and the page's orbit more");
+  Orbit orbit;
+  orbit.centre = value.at("centre").get<std::array<double, 3>>();
+  orbit.distance = value.at("distance").get<double>();
+  orbit.elevation = value.value("elevation", orbit.elevation);
+  orbit.from = value.value("from", orbit.from);
+  orbit.to = value.value("to", orbit.to);
+  orbit.frames = value.value("frames", orbit.frames);
+  if (orbit.from == orbit.to) throw bad_value(path + ".to", "is where the orbit begins");
+  return orbit;
+}
+
 Page read_page(const json& value, const json& common_techniques, const TextReader& texts,
                const std::string& path) {
   Page page;
@@ -119,6 +138,7 @@ Page read_page(const json& value, const json& common_techniques, const TextReade
   const bool own = value.contains("techniques");
   const std::string list_path = own ? path + ".techniques" : "techniques";
   page.pictures = read_pictures(own ? value.at("techniques") : common_techniques, list_path);
+  page.orbit = read_orbit(value.value("orbit", json()), page.pictures, path + ".orbit", list_path);
   if (page.reference == ReferenceUse::hidden || page.reference == ReferenceUse::both) {
     for (const Picture& picture : page.pictures) {
       if (picture.id == "reference") {

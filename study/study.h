@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -54,11 +55,23 @@ struct Expectation {
   std::string worse;
 };
 
+/// A camera that turns about a point, the y axis up: people see each picture of a page from several
+/// sides, whichever they choose.
+struct Orbit {
+  std::array<double, 3> centre{};  ///< looked at; metres
+  double distance = 1.0;           ///< of the camera from it; metres
+  double elevation = 20.0;         ///< of the camera above it; degrees
+  double from = -30.0;             ///< degrees from the z axis towards the x axis
+  double to = 30.0;                ///< degrees; the views stand at equal steps, both ends included
+  int frames = 9;
+};
+
 /// One page: pictures of one scene.
 struct Page {
   std::string id;  ///< unique; the scene's id unless given
   std::string scene;
-  std::string camera;  ///< empty: the scene's first
+  std::string camera;          ///< empty: the scene's first
+  std::optional<Orbit> orbit;  ///< where the camera turns; what else it has is `camera`'s
   ReferenceUse reference = ReferenceUse::none;
   std::vector<Picture> pictures;  ///< to rank, the hidden reference included, in the file's order
   std::optional<Expectation> expected;
@@ -200,13 +213,17 @@ std::string study_hash(const Study& study);
 /// The reference as a picture of a page.
 Picture reference_picture();
 
-/// Bodies of POST /api/v1/renders for one page: pictures[i] in the page's order, and the reference
-/// where the page shows it. One's own picture is {"picture": its SHA-256} instead.
+/// Bodies of POST /api/v1/renders for one page: pictures[i][f] is view f of picture i in the page's
+/// order, and the reference where the page shows it. A page whose camera does not turn has one
+/// view. One's own picture is {"picture": its SHA-256} instead.
 struct PageRenders {
-  std::vector<nlohmann::json> pictures;
-  std::optional<nlohmann::json> shown_reference;
+  std::vector<std::vector<nlohmann::json>> pictures;
+  std::vector<nlohmann::json> shown_reference;  ///< empty where the page shows none
 };
 PageRenders page_renders(const Study& study, const Page& page);
+
+/// The view in which a page is first seen: the middle one.
+std::size_t first_view(const Page& page);
 
 /// The SHA-256 of one's own picture; empty where the request is a render's.
 std::string own_picture(const nlohmann::json& request);

@@ -1,4 +1,6 @@
 // What a study asks of the renderer.
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "study/study.h"
@@ -8,6 +10,20 @@ namespace penumbra::study {
 namespace {
 
 using nlohmann::json;
+
+/// The camera of one view of an orbit.
+json camera_of(const Orbit& orbit, int frame) {
+  constexpr double radians = std::numbers::pi / 180.0;
+  const double azimuth =
+      radians * (orbit.from + (orbit.to - orbit.from) * frame / (orbit.frames - 1));
+  const double elevation = radians * orbit.elevation;
+  const std::array<double, 3> outward{std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                                      std::cos(elevation) * std::cos(azimuth)};
+  json position = json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    position.push_back(orbit.centre[axis] + orbit.distance * outward[axis]);
+  return {{"position", position}, {"target", orbit.centre}};
+}
 
 json render_body(const Study& study, const Page& page, const Picture& picture) {
   if (!picture.own.empty()) return {{"picture", picture.own}};
@@ -23,17 +39,30 @@ json render_body(const Study& study, const Page& page, const Picture& picture) {
   return body;
 }
 
+std::vector<json> views_of(const Study& study, const Page& page, const Picture& picture) {
+  std::vector<json> views(page.orbit ? static_cast<std::size_t>(page.orbit->frames) : 1,
+                          render_body(study, page, picture));
+  if (page.orbit)
+    for (std::size_t frame = 0; frame < views.size(); ++frame)
+      views[frame]["camera_path"] = {camera_of(*page.orbit, static_cast<int>(frame))};
+  return views;
+}
+
 }  // namespace
 
 PageRenders page_renders(const Study& study, const Page& page) {
   PageRenders renders;
   for (const Picture& picture : page.pictures) {
-    renders.pictures.push_back(render_body(study, page, picture));
+    renders.pictures.push_back(views_of(study, page, picture));
   }
   if (page.reference == ReferenceUse::shown || page.reference == ReferenceUse::both) {
-    renders.shown_reference = render_body(study, page, reference_picture());
+    renders.shown_reference = views_of(study, page, reference_picture());
   }
   return renders;
+}
+
+std::size_t first_view(const Page& page) {
+  return page.orbit ? static_cast<std::size_t>(page.orbit->frames / 2) : 0;
 }
 
 std::string own_picture(const json& request) {
@@ -52,8 +81,9 @@ std::vector<json> all_renders(const Study& study) {
   };
   const auto add_page = [&](const Page& page) {
     const PageRenders of_page = page_renders(study, page);
-    for (const json& body : of_page.pictures) add(body);
-    if (of_page.shown_reference) add(*of_page.shown_reference);
+    for (const auto& views : of_page.pictures)
+      for (const json& body : views) add(body);
+    for (const json& body : of_page.shown_reference) add(body);
   };
   if (study.practice) add_page(study.practice->page);
   for (const Page& page : study.pages) add_page(page);

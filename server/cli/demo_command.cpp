@@ -62,9 +62,9 @@ Plan plan_of(const study::Study& study) {
     for (std::size_t i = 0; i < page.pictures.size(); ++i) {
       plan.order.push_back(plan.cells.size());
       plan.cells.push_back({page.id, page.pictures[i].id, page.pictures[i].label, {}, {}, {}});
-      plan.requests.push_back(renders.pictures[i]);
+      plan.requests.push_back(renders.pictures[i].at(study::first_view(page)));
       plan.requests.back()["measure"] = true;
-      const std::string technique = renders.pictures[i].at("technique");
+      const std::string technique = plan.requests.back().at("technique");
       place.emplace_back(techniques::resolve(technique).technique->family != "truth", i);
     }
   }

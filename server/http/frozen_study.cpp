@@ -14,13 +14,17 @@ const FrozenStudy::PagePictures& pictures_of(const FrozenStudy& frozen,
 FrozenStudy::PagePictures page_pictures(const study::Study& study, const study::Page& page,
                                         const std::map<std::string, storage::FrozenPicture>& all) {
   const auto renders = study::page_renders(study, page);
-  const auto digest_of = [&](const nlohmann::json& request) {
-    const auto frozen = all.find(request_key(request));
-    return frozen == all.end() ? std::string(lost_picture) : frozen->second.digest;
+  const auto digests_of = [&](const std::vector<nlohmann::json>& views) {
+    std::vector<std::string> digests;
+    for (const auto& request : views) {
+      const auto frozen = all.find(request_key(request));
+      digests.push_back(frozen == all.end() ? lost_picture : frozen->second.digest);
+    }
+    return digests;
   };
   FrozenStudy::PagePictures found;
-  for (const auto& request : renders.pictures) found.digests.push_back(digest_of(request));
-  if (renders.shown_reference) found.reference = digest_of(*renders.shown_reference);
+  for (const auto& views : renders.pictures) found.digests.push_back(digests_of(views));
+  found.reference = digests_of(renders.shown_reference);
   return found;
 }
 
@@ -36,12 +40,13 @@ study::EnrolmentPlan FrozenStudy::plan(std::size_t place) const {
   return study::plan_enrolment(study, *permutations, place);
 }
 
-std::string FrozenStudy::picture(const study::PlannedPage& planned, std::size_t slot) const {
+std::vector<std::string> FrozenStudy::picture(const study::PlannedPage& planned,
+                                              std::size_t slot) const {
   if (slot >= planned.slots.size()) return {};
   return pictures_of(*this, planned).digests.at(planned.slots[slot]);
 }
 
-std::string FrozenStudy::reference(const study::PlannedPage& planned) const {
+std::vector<std::string> FrozenStudy::reference(const study::PlannedPage& planned) const {
   return pictures_of(*this, planned).reference;
 }
 

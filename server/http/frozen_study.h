@@ -26,15 +26,15 @@ struct FrozenStudy {
   /// What the person at a place is shown, and in which order. Thread-safe.
   study::EnrolmentPlan plan(std::size_t place) const;
 
-  /// SHA-256 of the picture at a slot, or `lost_picture` in a draft and where the database's row is
-  /// damaged; empty where there is no such slot.
-  std::string picture(const study::PlannedPage& planned, std::size_t slot) const;
-  /// SHA-256 of the reference shown beside the pictures; empty where none is.
-  std::string reference(const study::PlannedPage& planned) const;
+  /// By view, SHA-256 of the picture at a slot, or `lost_picture` in a draft and where the
+  /// database's row is damaged; empty where there is no such slot.
+  std::vector<std::string> picture(const study::PlannedPage& planned, std::size_t slot) const;
+  /// By view, SHA-256 of the reference shown beside the pictures; empty where none is.
+  std::vector<std::string> reference(const study::PlannedPage& planned) const;
 
   struct PagePictures {
-    std::vector<std::string> digests;  ///< in the page's order
-    std::string reference;
+    std::vector<std::vector<std::string>> digests;  ///< by picture in the page's order, and view
+    std::vector<std::string> reference;             ///< by view
   };
   std::vector<PagePictures> pages;
   PagePictures practice;

@@ -76,11 +76,19 @@ std::string drawn(Service& service, const json& request) {
   return pixels_only(*png);
 }
 
-/// The render request of a slot, or of the reference shown beside the pictures.
+/// The render request of one view of a slot, or of the reference shown beside the pictures.
 json render_request(const FrozenStudy& frozen, const study::PlannedPage& planned,
-                    std::optional<std::size_t> slot) {
+                    std::optional<std::size_t> slot, std::size_t view) {
   const auto renders = study::page_renders(frozen.study, study::page_of(frozen.study, planned));
-  return slot ? renders.pictures.at(planned.slots.at(*slot)) : renders.shown_reference.value();
+  return (slot ? renders.pictures.at(planned.slots.at(*slot)) : renders.shown_reference).at(view);
+}
+
+/// A whole number without a sign; none where a path has anything else.
+std::optional<std::size_t> number_in(const std::string& text) {
+  std::size_t number = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = failure == std::errc{} && end == text.data() + text.size();
+  return whole ? std::optional(number) : std::nullopt;
 }
 
 /// Equal headers for every picture of every page: nothing but its pixels tells it from another.
@@ -90,24 +98,25 @@ void get_picture(Call& call) {
   const auto plan = frozen->plan(person.place);
   const auto& planned = plan.pages[page_at(call, plan)];
   const auto& slot = call.path.at("slot");
-  std::string digest;
+  std::vector<std::string> views;
   std::optional<std::size_t> number;
-  if (slot == "reference") {
-    digest = frozen->reference(planned);
-  } else {
-    number.emplace(0);
-    const auto [end, failure] = std::from_chars(slot.data(), slot.data() + slot.size(), *number);
-    if (failure == std::errc{} && end == slot.data() + slot.size())
-      digest = frozen->picture(planned, *number);
-  }
-  if (digest.empty()) throw nothing_here();
+  if (slot == "reference")
+    views = frozen->reference(planned);
+  else if ((number = number_in(slot)))
+    views = frozen->picture(planned, *number);
+  const auto frame = call.path.find("frame");
+  const auto view = frame == call.path.end()
+                        ? std::optional(study::first_view(study::page_of(frozen->study, planned)))
+                        : number_in(frame->second);
+  if (!view || *view >= views.size()) throw nothing_here();
+  const auto& digest = views[*view];
   const bool draft = person.test && digest == lost_picture;
   auto& pictures = call.service.pictures;
   // All pictures of a study have one size, so that those too large for WebP tell nothing either.
   const auto webp = !draft && takes_webp(call.request.get_header_value("Accept"))
                         ? pictures.read_webp(digest)
                         : std::nullopt;
-  const auto bytes = draft  ? drawn(call.service, render_request(*frozen, planned, number))
+  const auto bytes = draft  ? drawn(call.service, render_request(*frozen, planned, number, *view))
                      : webp ? *webp
                             : pictures.read(digest);
   call.response.status = 200;
@@ -196,6 +205,7 @@ void add_participant_routes(std::vector<Route>& table) {
   table.push_back({"PUT", person + "/screen", Access::anyone, put_screen});
   table.push_back({"PUT", page, Access::anyone, put_answer});
   table.push_back({"GET", page + "/pictures/{slot}", Access::anyone, get_picture});
+  table.push_back({"GET", page + "/pictures/{slot}/{frame}", Access::anyone, get_picture});
   table.push_back({"POST", person + "/complete", Access::anyone, complete});
   table.push_back({"DELETE", "/api/v1/withdrawals/{code}", Access::anyone, withdraw});
 }

@@ -14,8 +14,15 @@ std::string page_path(const std::string& token, std::size_t page) {
   return "/api/v1/participants/" + token + "/pages/" + std::to_string(page);
 }
 
-json image_at(const std::string& url, const study::Study& study) {
-  return {{"url", url}, {"width", study.picture.width}, {"height", study.picture.height}};
+/// A picture of a page: with `frames`, the addresses of its views, where the page can be turned.
+json image_at(const std::string& url, const study::Study& study, const study::Page& page) {
+  json image = {{"url", url}, {"width", study.picture.width}, {"height", study.picture.height}};
+  if (!page.orbit) return image;
+  image["frames"] = json::array();
+  for (int frame = 0; frame < page.orbit->frames; ++frame)
+    image["frames"].push_back(url + "/" + std::to_string(frame));
+  image["url"] = image["frames"][study::first_view(page)];
+  return image;
 }
 
 /// Slots of a practice page, the most realistic first: it is never counted, and people learn from
@@ -30,21 +37,21 @@ std::vector<std::size_t> right_order(const study::PlannedPage& planned) {
 json page_body(const FrozenStudy& frozen, const storage::ParticipantRecord& person,
                const study::PlannedPage& planned, std::size_t index, const json& answer) {
   const auto pictures = page_path(person.token, index) + "/pictures/";
+  const auto& shown = study::page_of(frozen.study, planned);
   auto images = json::array();
   for (std::size_t slot = 0; slot < planned.slots.size(); ++slot) {
-    images.push_back(image_at(pictures + std::to_string(slot), frozen.study));
+    images.push_back(image_at(pictures + std::to_string(slot), frozen.study, shown));
     images.back()["slot"] = slot;
   }
   const bool practice = planned.kind == study::PageKind::practice;
-  const auto& own_question = study::page_of(frozen.study, planned).question;
-  const auto& question = own_question.empty() ? frozen.study.question : own_question;
+  const auto& question = shown.question.empty() ? frozen.study.question : shown.question;
   return {{"page", index},
           {"kind", practice ? "practice" : "ranking"},
           {"question", question.at(person.language)},
           {"images", images},
           {"reference", frozen.reference(planned).empty()
                             ? json(nullptr)
-                            : image_at(pictures + "reference", frozen.study)},
+                            : image_at(pictures + "reference", frozen.study, shown)},
           {"right_order", practice ? json(right_order(planned)) : json(nullptr)},
           {"answer", answer}};
 }

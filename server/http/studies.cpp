@@ -199,21 +199,24 @@ void check_own_picture(Service& service, const study::Study& study, const std::s
 /// Asks for every picture of a page whether it could be drawn.
 void check_pictures(Service& service, const study::Study& study, const study::Page& page,
                     const std::string& path, const json& document, study::FaultList& faults) {
-  const auto requests = study::page_renders(study, page).pictures;
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    if (const auto own = study::own_picture(requests[i]); !own.empty()) {
+  const auto pictures = study::page_renders(study, page).pictures;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const json& request = pictures[i].front();  // views differ by where the camera stands
+    if (const auto own = study::own_picture(request); !own.empty()) {
       check_own_picture(service, study, own, picture_path(study, path, document, i), faults);
       continue;
     }
     try {
-      service.renders->check(requests[i]);
+      service.renders->check(request);
     } catch (const Error& error) {
       if (error.code != "bad_value" && error.code != "not_found" && error.code != "unsupported")
         throw;
       auto field = picture_path(study, path, document, i);
       if (error.field == "scene" || error.field == "camera")
         field = path + "." + error.field;
-      else if (requests[i].contains(error.field) && error.field != "technique")
+      else if (error.field.starts_with("camera_path"))
+        field = path + ".orbit";
+      else if (request.contains(error.field) && error.field != "technique")
         field = "picture." + error.field;
       else if (error.field != "technique" && !error.field.empty())
         field += ".parameters." + error.field;

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
 #include <set>
 
 #include "study_file.h"
@@ -116,8 +118,77 @@ TEST(Study, RendersAreListedOnceAndInTheOrderOfPages) {
   EXPECT_EQ(renders[2]["width"], 600);
   EXPECT_EQ(renders[2]["supersampling"], 4);
   EXPECT_FALSE(renders[2].contains("camera"));
-  EXPECT_TRUE(page_renders(study, study.pages[0]).shown_reference.has_value());
-  EXPECT_FALSE(page_renders(study, study.pages[1]).shown_reference.has_value());
+  EXPECT_EQ(page_renders(study, study.pages[0]).shown_reference.size(), 1u);
+  EXPECT_TRUE(page_renders(study, study.pages[1]).shown_reference.empty());
+}
+
+TEST(Study, AnOrbitTurnsTheCameraAboutItsCentre) {
+  json document = thesis_document();
+  document["techniques"] = {"none", "shadow-map"};
+  document["pages"] = {{{"scene", "boxes"}},
+                       {{"scene", "boxes"},
+                        {"id", "turned"},
+                        {"camera", "main"},
+                        {"reference", "shown"},
+                        {"orbit",
+                         {{"centre", {1, 2, 3}},
+                          {"distance", 10},
+                          {"elevation", 0},
+                          {"from", -90},
+                          {"to", 90},
+                          {"frames", 5}}}}};
+  const Study study = parse_study(document);
+  EXPECT_EQ(all_renders(study).size(), 2u + 3u * 5u);
+  EXPECT_EQ(first_view(study.pages[0]), 0u);
+  EXPECT_EQ(first_view(study.pages[1]), 2u);
+  const auto still = page_renders(study, study.pages[0]);
+  ASSERT_EQ(still.pictures[0].size(), 1u);
+  EXPECT_FALSE(still.pictures[0][0].contains("camera_path"));
+  const auto turned = page_renders(study, study.pages[1]);
+  ASSERT_EQ(turned.pictures.size(), 2u);
+  ASSERT_EQ(turned.shown_reference.size(), 5u);
+  // Seen from the x axis below zero, from the z axis, and from the x axis beyond zero.
+  const double root = 10.0 * std::sqrt(0.5);
+  const std::vector<std::array<double, 3>> positions{
+      {-9, 2, 3}, {1 - root, 2, 3 + root}, {1, 2, 13}, {1 + root, 2, 3 + root}, {11, 2, 3}};
+  for (std::size_t view = 0; view < positions.size(); ++view) {
+    const json& request = turned.pictures[1][view];
+    EXPECT_EQ(request["technique"], "shadow-map");
+    EXPECT_EQ(request["camera"], "main");
+    ASSERT_EQ(request["camera_path"].size(), 1u);
+    EXPECT_EQ(request["camera_path"][0]["target"], json({1, 2, 3}));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(request["camera_path"][0]["position"][axis], positions[view][axis], 1e-9);
+  }
+  // Raised by 30 degrees: half the distance above the centre.
+  document["pages"][1]["orbit"]["elevation"] = 30;
+  const Study raised = parse_study(document);
+  EXPECT_NEAR(page_renders(raised, raised.pages[1]).pictures[0][4]["camera_path"][0]["position"][1],
+              7, 1e-9);
+}
+
+TEST(Study, FaultsOfAnOrbitAreNamed) {
+  const auto with = [](const char* key, const json& value) {
+    return fault_of([&](json& document) {
+      auto& page = document["pages"][0];
+      page["techniques"] = {"none", "shadow-map"};
+      page["orbit"] = {{"centre", {0, 1, 0}}, {"distance", 5}};
+      page["orbit"][key] = value;
+    });
+  };
+  EXPECT_EQ(with("distance", 0), "pages[0].orbit.distance");
+  EXPECT_EQ(with("centre", {0, 1}), "pages[0].orbit.centre");
+  EXPECT_EQ(with("elevation", 90), "pages[0].orbit.elevation");
+  EXPECT_EQ(with("frames", 1), "pages[0].orbit.frames");
+  EXPECT_EQ(with("frames", 73), "pages[0].orbit.frames");
+  EXPECT_EQ(with("to", -30), "pages[0].orbit.to");
+  EXPECT_EQ(with("speed", 3), "pages[0].orbit.speed");
+  EXPECT_EQ(fault_of([](json& document) {
+              document["pages"][0]["orbit"] = {{"centre", {0, 1, 0}}, {"distance", 5}};
+              document["pages"][0]["techniques"] = {
+                  "none", {{"id", "mine"}, {"picture", std::string(64, 'a')}}};
+            }),
+            "pages[0].techniques[1].picture");
 }
 
 TEST(Study, AHiddenReferenceIsRankedLikeTheOthers) {
@@ -127,7 +198,7 @@ TEST(Study, AHiddenReferenceIsRankedLikeTheOthers) {
   const Study study = parse_study(document);
   ASSERT_EQ(study.pages[0].pictures.size(), 3u);
   EXPECT_EQ(study.pages[0].pictures[2].technique, "reference");
-  EXPECT_FALSE(page_renders(study, study.pages[0]).shown_reference.has_value());
+  EXPECT_TRUE(page_renders(study, study.pages[0]).shown_reference.empty());
 }
 
 TEST(Study, TheWelcomeTellsNeitherTechniquesNorScenesNorTheCompletionCode) {

@@ -3,6 +3,7 @@
 import { h, icon } from "/assets/shared/dom.js";
 import { make_draggable } from "./drag.js";
 import { Glance } from "./glance.js";
+import { turning_image } from "./orbit.js";
 
 const glide_ms = 180;
 
@@ -76,7 +77,7 @@ export class Board {
   make_picture(picture) {
     const { strings } = this;
     const button = h("button", { type: "button", class: "pick", "aria-pressed": "false", draggable: "false" },
-      h("img", { src: picture.url, alt: picture.name, width: picture.width, height: picture.height, draggable: "false" }),
+      turning_image(picture, { alt: picture.name, width: picture.width, height: picture.height, draggable: "false" }),
       h("span", { class: "where unseen" }));
     const item = h("li", { class: "picture", data: { slot: picture.slot } }, button,
       h("div", { class: "caption" }, h("span", { class: "letter", "aria-hidden": "true" }, picture.letter),

@@ -49,6 +49,7 @@ export class Glance {
     const place = source.getBoundingClientRect();
     const on_left = place.left + place.right < innerWidth;
     const room = on_left ? innerWidth - place.right : place.left;
+    this.image.dataset.turns = source.dataset.turns;
     this.image.src = source.src;
     this.caption.textContent = caption;
     this.element.hidden = false;

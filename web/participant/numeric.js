@@ -2,6 +2,7 @@
 // gets a digit, equal ones allowed, kept as typed.
 
 import { h, icon } from "/assets/shared/dom.js";
+import { turning_image } from "./orbit.js";
 
 /// The labels of the digits 1 and 9.
 export const digit_ends = ({ most, least }, best) => (best === 9 ? [least, most] : [most, least]);
@@ -24,7 +25,7 @@ export class DigitBoard {
       return h("li", { class: "picture" },
         h("button", { type: "button", class: "pick", "aria-label": strings.enlarge(picture.name),
           on: { click: () => on_enlarge(picture.slot) } },
-        h("img", { src: picture.url, alt: "", width: picture.width, height: picture.height })),
+        turning_image(picture, { alt: "", width: picture.width, height: picture.height })),
         h("div", { class: "caption" }, h("span", { "aria-hidden": "true" }, picture.letter), field, icon("enlarge")));
     });
     this.element = h("section", { class: "digits" },

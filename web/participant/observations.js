@@ -10,7 +10,9 @@ export class Observations {
       blurs: earlier.blurs ?? 0,
       load_failures: earlier.load_failures ?? 0,
       swaps: earlier.swaps ?? 0,
+      turns: earlier.turns ?? 0,
     };
+    this.views = new Set(earlier.views ?? []);  // of a page that can be turned
     this.started_at = earlier.started_at ?? null;
     this.since = null;  // performance.now() of the moment since when the page is in front and focused
     this.listening = new AbortController();
@@ -51,17 +53,22 @@ export class Observations {
     this.counts[what] += 1;
   }
 
+  see(view) {
+    this.views.add(view);
+  }
+
   draft() {
     this.settle();
-    return { ...this.counts, started_at: this.started_at };
+    return { ...this.counts, started_at: this.started_at, views: [...this.views] };
   }
 
   /// The fields of an answer. Window and screen in CSS pixels, times in ms.
   answer() {
-    const counts = this.draft();
+    const { views, ...counts } = this.draft();
     const total_ms = Math.max(0, Date.now() - Date.parse(counts.started_at));
     return {
       ...counts,
+      frames_seen: views.length,
       // Two clocks: the steady one may run a little ahead of the calendar's.
       active_ms: Math.min(total_ms, Math.round(counts.active_ms)),
       total_ms,

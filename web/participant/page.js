@@ -6,6 +6,7 @@ import { Board } from "./board.js";
 import { confirm_order } from "./confirm.js";
 import { DigitBoard } from "./numeric.js";
 import { Observations } from "./observations.js";
+import { Orbit, turning_image } from "./orbit.js";
 import { Viewer } from "./viewer.js";
 
 const reference_slot = "reference";  // in the viewer, beside the slots of the pictures to rank
@@ -25,8 +26,21 @@ export class RankingPage {
       this.arrangement = new Arrangement([...pictures.keys()], kept.shelves, kept.all_same ?? false);
       this.board = new Board({ ...shared, arrangement: this.arrangement, announce });
     }
+    if (page.reference) Object.assign(page.reference, { slot: reference_slot, letter: strings.reference_short, name: strings.reference });
+    if (page.images[0].frames) this.orbit = this.make_orbit();
     this.element = this.make(kept.difficulty ?? null);
     this.follow();
+  }
+
+  make_orbit() {
+    const { page, pictures, strings } = this;
+    const orbit = new Orbit({ pictures: [...pictures.values(), page.reference].filter(Boolean), strings,
+      on_turn: (view) => {
+        this.observations.see(view);
+        this.note("turns");
+      } });
+    this.observations.see(orbit.view);
+    return orbit;
   }
 
   make(difficulty) {
@@ -52,16 +66,16 @@ export class RankingPage {
         h("button", { type: "button", class: "primary next", on: { click: () => this.leave() } }, strings.next)));
     const question = h("div", { class: "question" },
       this.practice ? h("p", { class: "practice" }, h("strong", {}, strings.practice), ` ${strings.practice_text}`) : null,
-      h("h1", { tabindex: "-1" }, this.page.question),
+      h("h1", { tabindex: "-1" }, this.page.question), this.orbit?.control(),
       this.digits ? null : h("details", { class: "ways" }, h("summary", {}, strings.how_heading), h("p", {}, strings.how_ways)));
     const reference = this.make_reference();
     this.work = h("div", { class: `work ${this.digits ? "typed" : "shelved"}` },
       this.digits ? [reference, this.digits.element]
         : [h("div", { class: "tray-place" }, reference, this.board.tray),
-          h("p", { class: "keys", "aria-hidden": "true" }, strings.board_keys), this.board.rack, this.board.glance.element], finish);
+          h("p", { class: "keys", "aria-hidden": "true" }, strings.board_keys, this.orbit ? ` · ${strings.turn_keys}` : ""), this.board.rack, this.board.glance.element], finish);
     const stage = h("div", { class: "stage" }, question, this.work);
     stage.classList.toggle("shelving", !this.digits);
-    if (this.board) stage.addEventListener("keydown", (event) => this.key(event));
+    stage.addEventListener("keydown", (event) => this.key(event));
     return stage;
   }
 
@@ -69,7 +83,7 @@ export class RankingPage {
   make_reference() {
     const { page, strings } = this;
     if (!page.reference) return null;
-    this.reference_image = h("img", { src: page.reference.url, alt: strings.enlarge(strings.reference) });
+    this.reference_image = turning_image(page.reference, { alt: strings.enlarge(strings.reference) });
     const button = h("button", { type: "button", class: "pick", on: { click: () => this.enlarge(reference_slot) } }, this.reference_image);
     this.board?.glance.attach(button, () => strings.reference);
     return h("figure", { class: "true-picture" }, button, h("figcaption", {}, strings.reference));
@@ -77,7 +91,8 @@ export class RankingPage {
 
   /// One key leads through the page: every picture to place, then the last question.
   key(event) {
-    if (event.altKey || event.ctrlKey || event.metaKey || event.key.toLowerCase() !== "n") return;
+    if (event.altKey || event.ctrlKey || event.metaKey || this.orbit?.key(event)) return;
+    if (!this.board || event.key.toLowerCase() !== "n") return;
     event.preventDefault();
     if (!this.board.focus_next()) this.focus_difficulty();
   }
@@ -94,12 +109,11 @@ export class RankingPage {
   enlarge(slot) {
     const pictures = new Map(this.pictures);
     if (this.page.reference) {
-      pictures.set(reference_slot, { ...this.page.reference, slot: reference_slot,
-        width: this.reference_image.naturalWidth, height: this.reference_image.naturalHeight,
-        letter: this.strings.reference_short, name: this.strings.reference });
+      pictures.set(reference_slot, Object.assign(this.page.reference,
+        { width: this.reference_image.naturalWidth, height: this.reference_image.naturalHeight }));
     }
     this.board?.glance.withdraw();
-    this.viewer = new Viewer({ pictures, strings: this.strings,
+    this.viewer = new Viewer({ pictures, strings: this.strings, orbit: this.orbit,
       shelf_of: (which) => this.arrangement?.shelf_of(which) ?? null, lowest: this.pictures.size - 1,
       place_text: (which) => (this.board && which !== reference_slot ? this.board.shelf_text(this.arrangement.shelf_of(which)) : ""),
       on_flip: () => this.note("flips"), on_show: () => this.note("enlargements") });

@@ -32,11 +32,16 @@ async function decoded(url) {
 const letter_of = (position) =>
   position < 26 ? String.fromCharCode(65 + position) : letter_of(Math.floor(position / 26) - 1) + letter_of(position % 26);
 
+const pictures_of = (page) => [...(page?.images ?? []), page?.reference].filter(Boolean);
+
+/// Addresses of all views of a picture.
+const views_of = ({ url, frames }) => frames ?? [url];
+
 /// The pictures of a page by slot, in the order shown. A picture's letter follows its place on this
 /// page and nothing else. `progress(done, total)` is told after each picture. Throws if any cannot be
 /// loaded or decoded.
 export async function load_pictures(page, strings, progress) {
-  const total = page.images.length + (page.reference ? 1 : 0);
+  const total = pictures_of(page).flatMap(views_of).length;
   let done = 0;
   const counted = async (url) => {
     const image = await decoded(url);
@@ -44,15 +49,16 @@ export async function load_pictures(page, strings, progress) {
     return image;
   };
   progress(0, total);
-  const one = async ({ slot, url }, position) => {
-    const image = await counted(url);
+  const one = async ({ slot, url, frames }, position) => {
+    // Held on to, so that the browser keeps every view.
+    const views = await Promise.all(views_of({ url, frames }).map(counted));
     const letter = letter_of(position);
-    return [String(slot), { slot: String(slot), url, letter, name: strings.picture(letter),
-      width: image.naturalWidth, height: image.naturalHeight }];
+    return [String(slot), { slot: String(slot), url, frames, views, letter, name: strings.picture(letter),
+      width: views[0].naturalWidth, height: views[0].naturalHeight }];
   };
   const [pairs] = await Promise.all([
     Promise.all(page.images.map(one)),
-    page.reference ? counted(page.reference.url) : null,
+    page.reference ? Promise.all(views_of(page.reference).map(counted)).then((views) => (page.reference.views = views)) : null,
   ]);
   return new Map(pairs);
 }
@@ -62,7 +68,7 @@ const ahead = [];  // held on to, so that the browser keeps them
 /// Fetches ahead of time, so that a page opens even where the network is gone by then. Whether that
 /// worked is found out when the page is shown.
 export function load_ahead(page) {
-  ahead.splice(0, ahead.length, ...[...(page?.images ?? []), page?.reference].filter(Boolean).map(({ url }) => {
+  ahead.splice(0, ahead.length, ...pictures_of(page).flatMap(views_of).map((url) => {
     const image = new Image();
     image.src = url;
     return image;

@@ -17,6 +17,11 @@ function shelf_name(shelf, count, ordinals, words) {
   return words.between(ordinals[steps] ?? words.far, from_top);
 }
 
+/// A view of a page that can be turned, counted from the one in the middle.
+function view_name(steps, ordinals, words) {
+  return steps === 0 ? words.middle : words.aside(ordinals[Math.abs(steps) - 1] ?? words.far, steps < 0);
+}
+
 const en = {
   language: "English",
   choose_language: "Language",
@@ -49,6 +54,10 @@ const en = {
     "goes to the next picture to place and, when none is left, to the question below; the up and down arrows move the picture in focus, " +
     "Home, M and End move it to the top, the middle and the bottom, the left and right arrows go to its neighbours, " +
     "Delete takes it back and E enlarges it, as a double click does.",
+  turn: "Turn the view",
+  turn_keys: "comma, full stop turn the view",
+  view: (steps) => view_name(steps, english_ordinals, {
+    middle: "middle", far: "far", aside: (which, to_left) => `${which} view to the ${to_left ? "left" : "right"}` }),
   board_keys: "N next · ↑ ↓ move · Home M End top, middle, bottom · E enlarge · Delete back",
   screen_heading: "Check your screen",
   screen_text: "Parts of the pictures are dark. If you cannot tell the patches apart, turn your screen brighter or move away from bright light.",
@@ -197,6 +206,10 @@ const nl = {
     "gaat N naar het volgende te plaatsen plaatje en, als er geen meer is, naar de vraag eronder; de pijlen omhoog en omlaag verplaatsen het plaatje, " +
     "Home, M en End zetten het bovenaan, in het midden en onderaan, de pijlen links en rechts gaan naar de buren, " +
     "Delete haalt het terug en E vergroot het, net als dubbelklikken.",
+  turn: "Draai het beeld",
+  turn_keys: "komma, punt draaien het beeld",
+  view: (steps) => view_name(steps, dutch_ordinals, {
+    middle: "midden", far: "verste", aside: (which, to_left) => `${which} blik naar ${to_left ? "links" : "rechts"}` }),
   board_keys: "N volgende · ↑ ↓ schuiven · Home M End boven, midden, onder · E vergroot · Delete terug",
   screen_heading: "Controleer uw scherm",
   screen_text: "Delen van de plaatjes zijn donker. Kunt u de vlakjes niet uit elkaar houden, zet uw scherm dan helderder of ga uit het felle licht.",

@@ -2,15 +2,17 @@
 // same place, or two side by side, always by the viewer's own hand. Zoom and position stay the same.
 
 import { h, icon } from "/assets/shared/dom.js";
+import { turning_image } from "./orbit.js";
 import { fit_to_device_pixels } from "./pixels.js";
 
 const zooms = [1, 2, 4, 8];  // device pixels per picture pixel: whole numbers keep every pixel equal
 
 export class Viewer {
   /// Opens over the page. `place_text(slot)` says where a picture stands, `shelf_of(slot)` is its shelf
-  /// from 0 to `lowest`, or null. `on_flip` and `on_show(slot)` are told what was looked at.
-  constructor({ pictures, strings, shelf_of, lowest, place_text, on_flip, on_show }) {
-    Object.assign(this, { pictures, strings, shelf_of, lowest, place_text, on_flip, on_show });
+  /// from 0 to `lowest`, or null. `on_flip` and `on_show(slot)` are told what was looked at. `orbit`
+  /// turns the pictures, where they can be turned.
+  constructor({ pictures, strings, orbit, shelf_of, lowest, place_text, on_flip, on_show }) {
+    Object.assign(this, { pictures, strings, orbit, shelf_of, lowest, place_text, on_flip, on_show });
     this.zoom = 0;
     this.shown = null;
     this.other = null;
@@ -28,9 +30,10 @@ export class Viewer {
     this.row,
     h("div", { class: "viewer-bar" },
       h("div", { class: "thumbnails", role: "group", "aria-label": strings.viewer_hint }, [...this.thumbnails.values()]),
+      orbit?.control(),
       h("div", { class: "viewer-tools" }, this.flip_button, this.beside_button, this.closer_button, this.further_button,
         this.button("close", "close", () => this.dialog.close())),
-      h("p", { class: "keys" }, strings.viewer_keys)),
+      h("p", { class: "keys" }, strings.viewer_keys, orbit ? ` · ${strings.turn_keys}` : "")),
     this.spoken);
   }
 
@@ -41,7 +44,7 @@ export class Viewer {
 
   /// One picture with its name and its place on the shelves.
   make_pane() {
-    const image = h("img", { alt: "" });
+    const image = turning_image(this.pictures.values().next().value, { alt: "" });
     const stage = h("div", { class: "viewer-stage", tabindex: "0", role: "group" }, image);
     const caption = h("figcaption", {});
     const pane = { image, stage, caption, element: h("figure", { class: "pane" }, stage, caption) };
@@ -54,14 +57,15 @@ export class Viewer {
   }
 
   /// The dot on the line beside a thumbnail is the picture's place between both ends of the shelves.
-  make_thumbnail({ slot, name, url, letter }) {
+  make_thumbnail(picture) {
+    const { slot, name, letter } = picture;
     const shelf = this.shelf_of(slot);
     const where = this.place_text(slot);
     const scale = h("span", { class: shelf === null ? "" : "thumb-place" });
     if (shelf !== null) scale.style.setProperty("--down", this.lowest > 0 ? shelf / this.lowest : 0);
     return h("button", { type: "button", class: "thumbnail", "aria-label": name, "aria-pressed": "false",
       title: where, on: { click: () => this.choose(slot) } },
-    h("span", { class: "thumbnail-picture" }, h("img", { src: url, alt: "" }), scale),
+    h("span", { class: "thumbnail-picture" }, turning_image(picture, { alt: "" }), scale),
     h("span", { "aria-hidden": "true" }, letter));
   }
 
@@ -113,6 +117,7 @@ export class Viewer {
     else second.element.remove();
     for (const [pane, which] of [[first, slot], ...(this.beside ? [[second, this.other]] : [])]) {
       const { url, name } = this.pictures.get(which);
+      pane.image.dataset.turns = which;
       pane.image.src = url;
       pane.image.alt = name;
       pane.stage.setAttribute("aria-label", name);
@@ -160,7 +165,7 @@ export class Viewer {
   }
 
   key(event) {
-    if (event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.altKey || event.ctrlKey || event.metaKey || this.orbit?.key(event)) return;
     const on_button = event.target.closest("button") !== null;
     const step = (by) => {
       const slots = [...this.pictures.keys()];
