@@ -59,14 +59,15 @@ struct Caught {
   double honest = 0.0;    ///< share of honest people who are
 };
 
-/// Six of 61 read the scale backwards (van Sambeek 2007, 6.3) and three rank at random, over
-/// `seeds` studies.
-Caught catch_inverted(double step, std::uint64_t seeds) {
+constexpr std::size_t who_told = 6;  // that they had read the scale backwards, of 61 (2007, 6.3)
+
+/// `inverted` of 61 read the scale backwards and three rank at random, over `seeds` studies.
+Caught catch_inverted(double step, std::uint64_t seeds, std::size_t inverted = who_told) {
   const Study study = nine_pictures();
   const Preferences preferences = default_preferences(study, step);
   Caught caught;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const auto people = simulate_people(61, 6, 3, seed);
+    const auto people = simulate_people(61, inverted, 3, seed);
     const auto rows = simulate_responses(study, people, preferences, seed);
     std::set<std::string> flagged;
     for (const json& flag : screening_flags(statistics::gather(rows), study.analysis.screening)) {
@@ -79,8 +80,10 @@ Caught catch_inverted(double step, std::uint64_t seeds) {
       (people[i].kind == PersonKind::inverted ? caught.inverted : caught.honest) += 1.0;
     }
   }
-  const auto studies = static_cast<double>(seeds);
-  return {caught.inverted / (6.0 * studies), caught.honest / (52.0 * studies)};
+  const auto of_all = [&](double found, std::size_t people) {
+    return found / static_cast<double>(people * seeds);
+  };
+  return {of_all(caught.inverted, inverted), of_all(caught.honest, 58 - inverted)};
 }
 
 TEST(Simulation, InvertedPeopleAreFlaggedAndHonestOnesAreNotWherePreferencesAreClear) {
@@ -90,6 +93,16 @@ TEST(Simulation, InvertedPeopleAreFlaggedAndHonestOnesAreNotWherePreferencesAreC
   RecordProperty("honest_flagged", std::to_string(caught.honest));
   EXPECT_GE(caught.inverted, 0.95);
   EXPECT_LE(caught.honest, 0.01);
+}
+
+TEST(Simulation, InvertedPeopleAreFlaggedWhereOthersDidNotTellThatTheyWereToo) {
+  // Claim P03 with k more who turned the scale round: they pull everybody else's mean towards the
+  // middle, and lean on each other. 61 people hold twice as many as told of it.
+  for (const std::size_t k : {3u, 6u}) {
+    const Caught caught = catch_inverted(0.8, 40, who_told + k);
+    EXPECT_GE(caught.inverted, 0.95) << k;
+    EXPECT_LE(caught.honest, 0.01) << k;
+  }
 }
 
 TEST(Simulation, WeakerPreferencesHideInvertedPeopleButAccuseNobody) {
