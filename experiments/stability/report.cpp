@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "experiments/report/page.h"
+#include "experiments/stability/safe_ranges.h"
 #include "figures/charts.h"
 #include "renderer/error.h"
 #include "techniques/registry.h"
@@ -196,6 +197,12 @@ std::string html_of(const Report& report,
   return page.text();
 }
 
+std::vector<SafeRange> ranges_of(const Report& report) {
+  std::vector<SafeRange> ranges;
+  for (const Finding& finding : report.findings) ranges.push_back(safe_range_of(finding));
+  return ranges;
+}
+
 }  // namespace
 
 Axis find_axis(const std::string& technique, const std::string& id) {
@@ -238,6 +245,7 @@ void write_report(const Report& report, const std::filesystem::path& folder) {
   for (const auto& [name, svg] : figures) write(folder / "figures" / (name + ".svg"), svg);
   write(folder / "results.csv", findings_csv(report));
   write(folder / "steps.csv", steps_csv(report));
+  write(folder / "safe-ranges.md", safe_ranges_page(ranges_of(report)));
   write(folder / "report.html", html_of(report, figures));
 }
 

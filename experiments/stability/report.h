@@ -20,11 +20,11 @@ const std::vector<Reason>& reasons();
 /// The first that fits, or null.
 const Reason* reason_of(const std::string& technique, const std::string& axis);
 
-/// Writes results.csv, steps.csv, figures/*.svg and report.html, which opens by itself offline.
-/// Throws unwritable.
+/// Writes results.csv, steps.csv, safe-ranges.md, figures/*.svg and report.html, which opens by
+/// itself offline. Throws unwritable.
 void write_report(const Report& report, const std::filesystem::path& folder);
 
-/// Rows of `safe ranges`: technique, axis, value up to which it holds, value that ends it.
+/// Lines of results.csv: technique, axis, value up to which it holds, value that ends it.
 std::string findings_csv(const Report& report);
 
 /// How far along its axis a finding holds, 0..1.
