@@ -44,6 +44,18 @@ void widen(ExtentBox& box, bool directional, const GpuScene& scene) {
   box.high += 1e-6 * reach;
 }
 
+/// Rasterisers interpolate positions from a corner of the picture: how far they round grows with
+/// what lies between its borders. Of a picture that is longer than this ratio it shows (lavapipe,
+/// 1218 by 8 pixels).
+constexpr float usual_ratio = 16.0f;
+
+/// Distance that receivers are moved along their normal, per metre.
+float offset_in(const GeometryBuffer& picture) {
+  const auto [low, high] = std::minmax(picture.width, picture.height);
+  const float ratio = static_cast<float>(high) / static_cast<float>(low);
+  return receiver_offset * std::max(1.0f, ratio / usual_ratio);
+}
+
 std::span<const glm::vec4> points_of(const PrepareContext& context, std::uint32_t set) {
   return context.points.subspan(std::size_t{set} * batch_size, batch_size);
 }
@@ -62,7 +74,7 @@ shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   widen(batch, directional, context.scene);
   widen(whole, directional, context.scene);
   data.box_low = glm::vec4(batch.low, directional ? 0.0 : 1.0);
-  data.box_high = glm::vec4(batch.high, receiver_offset);
+  data.box_high = glm::vec4(batch.high, offset_in(context.geometry));
   data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
   data.whole_high = glm::vec4(whole.high, 0.0);
   data.unused.x = context.points_in_batch < batch_size ? ~0u << context.points_in_batch : 0u;

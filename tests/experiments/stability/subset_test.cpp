@@ -63,6 +63,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Held{"shadow-map", "ground", 1e5}, Held{"shadow-map", "near", 1e-9},
                     Held{"shadow-map", "scale-down", 1e-6}, Held{"vsm", "outlier", 1e6}));
 
+TEST(WidePictures, keep_their_light_however_long_they_are) {
+  // Few of their pixels see the scene: all of those are judged.
+  const Axis axis = axis_of("reference", "wide-picture");
+  for (const char* technique : {"reference", "ray-traced"})
+    for (const double width : {1218.0, 2048.0, 8192.0}) {
+      const Step step = drawing().draw(techniques::resolve(technique), axis.trial(width), width);
+      EXPECT_GT(step.verdict.judged, 90u);
+      EXPECT_EQ(step.verdict.visibility_rms, 0.0) << technique << ' ' << width;
+      EXPECT_EQ(step.verdict.dark, 0u) << technique << ' ' << width;
+    }
+}
+
 TEST(Gentle, pictures_of_exact_techniques_agree_with_the_judge_in_every_pixel) {
   const Axis axis = axis_of("reference", "rotation");
   for (const char* technique : {"reference", "ray-traced", "shadow-volumes",
