@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "experiments/engine/versions.h"
 #include "renderer/error.h"
@@ -82,6 +83,17 @@ void add_cost(json& row, const Cost& cost) {
   row["passes"] = passes;
 }
 
+/// How far a picture lies from the truth.
+void add_errors(json& row, const RenderResult& drawn, const Image8& picture,
+                const ImageF& visibility) {
+  const auto error = metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
+  row["rms_y"] = metrics::rms_y(drawn.picture, picture);
+  row["flip"] = metrics::flip(drawn.picture, picture);
+  row["visibility_rms"] = error.rms;
+  row["false_shadow"] = error.false_shadow;
+  row["missing_shadow"] = error.missing_shadow;
+}
+
 }  // namespace
 
 const TechniqueDescription& technique_of_family(const std::string& family) {
@@ -143,20 +155,45 @@ json Engine::key_of(const Run& run, const techniques::Resolved& technique) {
   return key;
 }
 
+Engine::~Engine() {
+  try {
+    while (begun() > 0) next();
+  } catch (...) {  // what cannot be kept is measured again
+  }
+}
+
+std::size_t Engine::most_begun() const {
+  if (device().type == "cpu") return 0;
+  return std::max(2u, std::thread::hardware_concurrency()) - 1;
+}
+
 json Engine::measure(const Run& run) {
+  if (begun() > 0) throw std::logic_error("other runs were begun");
+  begin(run);
+  return next();
+}
+
+void Engine::begin(const Run& run) {
   const techniques::Resolved technique = techniques::resolve(run.technique, run.parameters);
   const std::string key = scenes::json_text(key_of(run, technique));
   // Names are the asker's: two names of one thing share a measurement.
-  json row = asked(run, technique);
-  const json* known = results_.find(key);
-  if (known == nullptr) {
-    const json fresh = measure_now(run, technique);
-    results_.add(key, fresh);
+  const bool known =
+      results_.find(key) != nullptr ||
+      std::any_of(begun_.begin(), begun_.end(), [&](const Begun& b) { return b.key == key; });
+  std::future<json> fresh;
+  if (!known) fresh = measure_now(run, technique);
+  begun_.push_back({asked(run, technique), key, std::move(fresh)});
+}
+
+json Engine::next() {
+  Begun first = std::move(begun_.front());
+  begun_.pop_front();
+  if (first.fresh.valid()) {
+    results_.add(first.key, first.fresh.get());
     ++measured_;
-    known = results_.find(key);
   }
-  row.update(*known);
-  return row;
+  first.row.update(*results_.find(first.key));
+  return first.row;
 }
 
 std::shared_ptr<const Scene> Engine::scene_for(const Run& run) {
@@ -199,17 +236,14 @@ RenderRequest Engine::truth_of(const Run& run) {
   return request_of(truth, techniques::resolve(technique_of_family(family_of(run.truth)).id));
 }
 
-const Engine::Judge& Engine::judge_of(const Run& run) {
-  const auto [place, fresh] = judges_.try_emplace(view_of(run));
-  if (!fresh) return place->second;
-  try {
-    const RenderResult drawn = renderer_.render(truth_of(run));
-    place->second = {drawn.picture, drawn.visibility};
-  } catch (...) {
-    judges_.erase(place);
-    throw;
+std::shared_ptr<const Engine::Judge> Engine::judge_of(const Run& run) {
+  auto& known = judges_[view_of(run)];
+  if (!known) {
+    RenderResult drawn = renderer_.render(truth_of(run));
+    known =
+        std::make_shared<const Judge>(Judge{std::move(drawn.picture), std::move(drawn.visibility)});
   }
-  return place->second;
+  return known;
 }
 
 const Engine::Baseline& Engine::baseline_of(const Run& run) {
@@ -225,43 +259,54 @@ const Engine::Baseline& Engine::baseline_of(const Run& run) {
   return baseline;
 }
 
-json Engine::measure_now(const Run& run, const techniques::Resolved& technique) {
+std::future<json> Engine::measure_now(const Run& run, const techniques::Resolved& technique) {
   json row = {{"status", "done"}, {"error", nullptr}};
+  auto drawn = std::make_shared<RenderResult>();
+  std::shared_ptr<const Judge> judge;
+  const auto failed = [](json failed_row, const Error& error) {
+    if (error.code == "device" || error.code == "unwritable" || error.field == "out") throw;
+    failed_row["status"] = "failed";
+    failed_row["error"] = {{"code", error.code}, {"message", error.what()}, {"field", error.field}};
+    return failed_row;
+  };
   try {
     // The truth first: nothing may come between the times of `none` and of the technique.
-    const Judge* judge = run.truth == Truth::none ? nullptr : &judge_of(run);
+    if (run.truth != Truth::none) judge = judge_of(run);
     std::shared_ptr<void> alone = options_.alone ? options_.alone() : nullptr;
     const Baseline before = is_baseline(run) ? Baseline{} : baseline_of(run);
-    const RenderResult drawn = timer_.time(request_of(run, technique));
+    *drawn = timer_.time(request_of(run, technique));
     alone.reset();
-    add_cost(row, drawn.cost);
-    row["notes"] = drawn.notes;
-    const double none_ms = is_baseline(run) ? drawn.cost.median_ms : before.ms;
-    row["settled"] = drawn.cost.settled && before.settled;
+    add_cost(row, drawn->cost);
+    row["notes"] = drawn->notes;
+    const double none_ms = is_baseline(run) ? drawn->cost.median_ms : before.ms;
+    row["settled"] = drawn->cost.settled && before.settled;
     row["none_ms"] = none_ms;
-    row["over_none"] = none_ms > 0.0 ? json(drawn.cost.median_ms / none_ms) : json(nullptr);
-    if (is_baseline(run)) baselines_[view_of(run)] = {none_ms, drawn.cost.settled, Clock::now()};
-    if (judge != nullptr) {
-      const auto error =
-          metrics::visibility_error(drawn.visibility, judge->visibility, drawn.judged);
-      row["rms_y"] = metrics::rms_y(drawn.picture, judge->picture);
-      row["flip"] = metrics::flip(drawn.picture, judge->picture);
-      row["visibility_rms"] = error.rms;
-      row["false_shadow"] = error.false_shadow;
-      row["missing_shadow"] = error.missing_shadow;
-    }
-    if (run.picture) {
-      char name[32];
-      std::snprintf(name, sizeof name, "pictures/%05zu.png", results_.size());
-      scenes::write_picture(options_.folder / name, drawn.picture);
-      row["picture"] = name;
-    }
+    row["over_none"] = none_ms > 0.0 ? json(drawn->cost.median_ms / none_ms) : json(nullptr);
+    if (is_baseline(run)) baselines_[view_of(run)] = {none_ms, drawn->cost.settled, Clock::now()};
   } catch (const Error& error) {
-    if (error.code == "device" || error.code == "unwritable" || error.field == "out") throw;
-    row["status"] = "failed";
-    row["error"] = {{"code", error.code}, {"message", error.what()}, {"field", error.field}};
+    row = failed(row, error);
+    return std::async(std::launch::deferred, [row] { return row; });
   }
-  return row;
+  // Results are kept in the order of their beginning, so that this will be its number.
+  const auto place = results_.size() + static_cast<std::size_t>(std::count_if(
+                                           begun_.begin(), begun_.end(),
+                                           [](const Begun& b) { return b.fresh.valid(); }));
+  const auto finish = [row, drawn, judge, failed, place, keep = run.picture,
+                       folder = options_.folder]() mutable {
+    try {
+      if (judge) add_errors(row, *drawn, judge->picture, judge->visibility);
+      if (keep) {
+        char name[32];
+        std::snprintf(name, sizeof name, "pictures/%05zu.png", place);
+        scenes::write_picture(folder / name, drawn->picture);
+        row["picture"] = name;
+      }
+      return row;
+    } catch (const Error& error) {
+      return failed(row, error);
+    }
+  };
+  return std::async(most_begun() > 0 ? std::launch::async : std::launch::deferred, finish);
 }
 
 std::vector<std::string> parts_of(const std::string& list, char separator) {
@@ -299,6 +344,7 @@ NamedTechnique read_technique(const std::string& text) {
 std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
                           const std::function<void(const Progress&)>& progress) {
   if (runs.empty()) return {};  // nothing is told of nothing
+  while (engine.begun() > 0) engine.next();  // of a list that was ended
   // Scenes keep the order in which they were first named.
   std::map<std::string, std::size_t> place;
   for (const Run& run : runs) place.try_emplace(run.scene, place.size());
@@ -322,8 +368,10 @@ std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
   for (const Run& run : runs) {
     tell(run.scene + " " + run.technique + " " + std::to_string(run.width) + "x" +
          std::to_string(run.height));
-    rows.push_back(engine.measure(run));
+    engine.begin(run);
+    while (engine.begun() > engine.most_begun()) rows.push_back(engine.next());
   }
+  while (engine.begun() > 0) rows.push_back(engine.next());
   tell("");
   return rows;
 }

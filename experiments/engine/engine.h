@@ -1,8 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -58,6 +60,10 @@ struct EngineOptions {
 class Engine {
  public:
   explicit Engine(EngineOptions options);
+  /// Waits for what was begun and keeps it.
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
 
   /// The run's result: what was asked for (scene, technique, ...), `status` done or failed,
   /// `error`, frame_ms, p95_ms, spread, frames, settled, none_ms, over_none, create_ms,
@@ -65,6 +71,17 @@ class Engine {
   /// false_shadow, missing_shadow. A technique that refuses the scene is a result too. Throws Error
   /// for scenes and techniques that there are not, and where the device fails.
   nlohmann::json measure(const Run& run);
+
+  /// The same in two parts: draws and times the run now, and judges its picture in a thread. So a
+  /// GPU goes on while errors are reckoned; left idle, it would lower its clocks. Throws as
+  /// `measure` does.
+  void begin(const Run& run);
+  /// The result of the run that was begun first, once it is judged.
+  nlohmann::json next();
+  /// Runs that were begun and not asked for.
+  std::size_t begun() const { return begun_.size(); }
+  /// How many may be judged beside what is drawn: on a processor none, whose times would tell.
+  std::size_t most_begun() const;
 
   /// Runs that were measured, not known.
   std::size_t measured() const { return measured_; }
@@ -81,6 +98,11 @@ class Engine {
     Image8 picture;
     ImageF visibility;
   };
+  struct Begun {
+    nlohmann::json row;  ///< what was asked for
+    std::string key;
+    std::future<nlohmann::json> fresh;  ///< not valid where the result is known
+  };
   struct Baseline {
     double ms = 0.0;
     bool settled = true;
@@ -88,10 +110,10 @@ class Engine {
   };
 
   nlohmann::json key_of(const Run& run, const techniques::Resolved& technique);
-  nlohmann::json measure_now(const Run& run, const techniques::Resolved& technique);
+  std::future<nlohmann::json> measure_now(const Run& run, const techniques::Resolved& technique);
   RenderRequest request_of(const Run& run, const techniques::Resolved& technique);
   RenderRequest truth_of(const Run& run);
-  const Judge& judge_of(const Run& run);
+  std::shared_ptr<const Judge> judge_of(const Run& run);
   const Baseline& baseline_of(const Run& run);
 
   EngineOptions options_;
@@ -106,8 +128,10 @@ class Engine {
   std::map<std::string, std::shared_ptr<const Scene>> changed_;
   std::shared_ptr<const Scene> scene_for(const Run& run);
 
-  std::map<std::string, Judge> judges_;  ///< of the scene at hand, by view
+  /// Of the scene at hand, by view.
+  std::map<std::string, std::shared_ptr<const Judge>> judges_;
   std::map<std::string, Baseline> baselines_;
+  std::deque<Begun> begun_;
 };
 
 /// How far a list of runs is.
