@@ -51,6 +51,7 @@ struct MemoryNeed {
   std::string name;          ///< as in the memory report
   std::uint64_t bytes = 0;   ///< at least
   std::uint32_t extent = 0;  ///< texels along an edge of an image; 0: a storage buffer
+  std::string parameter;     ///< that sets the size
 };
 
 /// Name of the requirement that scenes keep one structure for (GpuScene::derived_memory).

@@ -57,10 +57,10 @@ void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settin
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t bytes =
       std::uint64_t{size} * size * view_count(input) * vulkan::texel_bytes(settings.format);
-  needs.memory.push_back({settings.name + " rows", bytes, size});
+  needs.memory.push_back({settings.name + " rows", bytes, size, "map_size"});
   // A chain of halves adds a third.
   const std::uint64_t chain = has_mips(settings, input.parameters) ? bytes / 3 : 0;
-  needs.memory.push_back({settings.name, bytes + chain, size});
+  needs.memory.push_back({settings.name, bytes + chain, size, "map_size"});
 }
 
 void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,

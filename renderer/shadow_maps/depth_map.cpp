@@ -181,11 +181,12 @@ void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
         "layout " + layout.id + " cannot serve light " + input.light.name + ": " + why, "layout");
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t texels = std::uint64_t{size} * size * view_count(input);
-  needs.memory.push_back(
-      {"shadow map", texels * vulkan::texel_bytes(depth_format(input.parameters)), size});
+  needs.memory.push_back({"shadow map",
+                          texels * vulkan::texel_bytes(depth_format(input.parameters)), size,
+                          "map_size"});
   if (!knows_two_surfaces(input.parameters)) return;
   for (const char* layer : {"first depths", "second depths"})
-    needs.memory.push_back({layer, texels * vulkan::texel_bytes(layer_format), size});
+    needs.memory.push_back({layer, texels * vulkan::texel_bytes(layer_format), size, "map_size"});
 }
 
 void DepthMap::draw(PrepareContext& context, const MapUse& use) {

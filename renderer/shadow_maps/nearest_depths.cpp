@@ -20,7 +20,7 @@ void NearestDepths::require(const TechniqueInput& input, Requirements& needs) {
   needs.memory.push_back({"nearest depths",
                           std::uint64_t{2} * base * base * view_count(input) *
                               vulkan::texel_bytes(VK_FORMAT_R32_SFLOAT),
-                          2 * base});
+                          2 * base, "map_size"});
 }
 
 void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {

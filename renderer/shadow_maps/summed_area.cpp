@@ -37,7 +37,8 @@ void SummedAreaTable::require(const TechniqueInput& input, Requirements& needs) 
   const auto size = static_cast<std::uint64_t>(integer_of(input.parameters, "map_size"));
   needs.memory.push_back(
       {"summed-area table",
-       size * size * view_count(input) * entry_bytes(choice_of(input.parameters, "table"))});
+       size * size * view_count(input) * entry_bytes(choice_of(input.parameters, "table")), 0,
+       "map_size"});
 }
 
 void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth) {

@@ -46,7 +46,7 @@ class OccluderTextures : public Technique {
  public:
   void require(const TechniqueInput& input, Requirements& needs) override {
     const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "resolution"));
-    needs.memory.push_back({"occluder textures", std::uint64_t{size} * size, size});
+    needs.memory.push_back({"occluder textures", std::uint64_t{size} * size, size, "resolution"});
     // Which planes are worth one hangs on all casters together.
     needs.casters = CasterUse::all;
   }

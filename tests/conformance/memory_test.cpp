@@ -183,5 +183,28 @@ TEST(Memory, limits_that_are_not_known_refuse_nothing) {
   EXPECT_NO_THROW(check_memory(std::vector{needs}, {.storage_buffer = 1u << 30}));
 }
 
+TEST(Memory, that_a_device_lacks_is_refused_by_the_name_of_the_parameter_that_wants_it) {
+  Requirements needs;
+  needs.memory = {{"rows", 1u << 20, 0, "blur"},
+                  {"map", std::uint64_t{1} << 40, 16384, "map_size"}};
+  for (const DeviceLimits& limits :
+       {DeviceLimits{.memory = 1u << 30}, DeviceLimits{.light = 1u << 30},
+        DeviceLimits{.image_extent = 8192}}) {
+    try {
+      check_memory(std::vector{needs}, limits);
+      ADD_FAILURE() << "a terabyte was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code, "unsupported");
+      EXPECT_EQ(error.field, "map_size") << error.what();
+    }
+  }
+  try {
+    check_memory(std::vector{needs}, {.storage_buffer = 1u << 10});
+    ADD_FAILURE() << "a megabyte was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.field, "blur") << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace penumbra

@@ -87,10 +87,20 @@ TEST_F(Requests, OddNumbersAreRefusedByTheNameOfTheirField) {
         EXPECT_EQ(result->status, 400) << id << " " << name << "=" << value << result->body;
         const auto field = error_of(result->body).value("field", "");
         EXPECT_NE(field.find(name), std::string::npos) << id << " " << name << ": " << field;
+        // Where it is to be drawn, too; and the next good request is served.
+        const auto drawn =
+            client.Get("/api/v1/image?scene=half-plane&width=16&height=16&technique=" + id + "&" +
+                       name + "=" + value);
+        ASSERT_TRUE(drawn) << id << " " << name << "=" << value;
+        EXPECT_EQ(drawn->status, 400) << id << " " << name << "=" << value << drawn->body;
       }
+    const auto good = client.Get("/api/v1/image?scene=half-plane&light_samples=4&technique=" + id +
+                                 "&width=16&height=16");
+    ASSERT_TRUE(good) << id;
+    EXPECT_EQ(good->status, 200) << id << good->body;
   }
   EXPECT_GT(fault.tries, 300);
-  fault.did << "each 400 naming the parameter";
+  fault.did << "each 400 naming the parameter, and the next picture of the technique was drawn";
 }
 
 TEST_F(Requests, DeepAndHugeJsonIsRefused) {
