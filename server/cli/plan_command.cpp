@@ -1,3 +1,4 @@
+#include "experiments/plan/shares.h"
 #include "server/cli/request_options.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
@@ -26,18 +27,55 @@ std::string plan_text(const json& plan) {
          " MiB do not; the technique adds at least " + mebibytes(bytes.at("technique")) + " MiB\n";
 }
 
+/// What each rule saves of a frame, and what the technique takes of it.
+json measured(const RequestOptions& options, const CanonicalRequest& request) {
+  Renderer renderer(RendererOptions{options.device, options.validation});
+  const auto shares =
+      experiments::plan::measure_shares(renderer, to_render_request(request), {.run_ms = 300.0});
+  json rules = json::array();
+  for (const auto& share : shares.rules)
+    rules.push_back({{"rule", share.rule},
+                     {"without_ms", share.without_ms},
+                     {"saves_ms", share.without_ms - shares.frame_ms}});
+  return {{"device", renderer.device().name}, {"frame_ms", shares.frame_ms},
+          {"none_ms", shares.none_ms},        {"technique_ms", shares.frame_ms - shares.none_ms},
+          {"settled", shares.settled},        {"rules", rules}};
+}
+
+std::string measured_text(const json& measured) {
+  const auto ms = [&](const json& part, const char* key) {
+    return number(part.at(key).get<double>(), 3);
+  };
+  Table table({"rule", "frame without it, ms", "saves, ms"});
+  for (const json& rule : measured.at("rules"))
+    table.add({rule.at("rule"), ms(rule, "without_ms"), ms(rule, "saves_ms")});
+  return "\na frame takes " + ms(measured, "frame_ms") + " ms on " +
+         measured.at("device").get<std::string>() + ", of which " + ms(measured, "technique_ms") +
+         " ms are the technique's" + (measured.at("settled") ? "" : " (NOT SETTLED)") + "\n" +
+         table.text(true);
+}
+
 }  // namespace
 
 void add_plan_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<RequestOptions>();
+  auto measure = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("plan", "Say what a render would upload and draw, and why");
   options->add_to(*command);
+  command->add_flag("--measure", *measure,
+                    "Draw with each rule left out in turn and tell what it saves of a frame");
   add_json_flag(*command, session);
-  command->callback([options, &session] {
-    session.action = [options, &session] {
-      const json plan = plan_document(options->read(false));
-      session.print(plan, plan_text(plan));
+  command->callback([options, measure, &session] {
+    session.action = [options, measure, &session] {
+      const auto request = options->read(false);
+      json plan = plan_document(request);
+      std::string text = plan_text(plan);
+      if (*measure && plan.at("supported")) {
+        plan["measured"] = measured(*options, request);
+        text += measured_text(plan["measured"]);
+      }
+      session.print(plan, text);
       return 0;
     };
   });

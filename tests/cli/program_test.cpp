@@ -238,6 +238,24 @@ TEST_F(ProgramTest, times_the_same_view_without_shadows_beside) {
                    frame.at("median").get<double>() / frame.at("none_median").get<double>());
 }
 
+TEST_F(ProgramTest, measures_what_the_rules_of_a_plan_save) {
+  const Outcome outcome = run("plan half-plane shadow-map --width 32 --height 32 --measure --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json measured = json::parse(outcome.out).at("measured");
+  EXPECT_GT(measured.at("frame_ms"), 0.0);
+  EXPECT_GT(measured.at("none_ms"), 0.0);
+  EXPECT_DOUBLE_EQ(measured.at("technique_ms"),
+                   measured.at("frame_ms").get<double>() - measured.at("none_ms").get<double>());
+  std::vector<std::string> rules;
+  for (const auto& rule : measured.at("rules")) {
+    rules.push_back(rule.at("rule"));
+    EXPECT_GT(rule.at("without_ms"), 0.0);
+    EXPECT_DOUBLE_EQ(rule.at("saves_ms"),
+                     rule.at("without_ms").get<double>() - measured.at("frame_ms").get<double>());
+  }
+  EXPECT_EQ(rules, (std::vector<std::string>{"lights", "surfaces", "casters", "textures"}));
+}
+
 TEST_F(ProgramTest, measures_cost_and_error) {
   const Outcome outcome =
       run("measure half-plane none --width 64 --height 64 --light-samples 64 --frames 3 --json");
