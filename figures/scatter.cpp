@@ -198,7 +198,7 @@ std::string draw(const Front& chart) {
     taken.push_back({at.x - 3.5, at.y - 3.5, at.x + 3.5, at.y + 3.5});
     if (!point.interval) continue;
     const auto [low, high] =
-        std::minmax(vertical.at((*point.interval)[0]), vertical.at((*point.interval)[1]));
+        std::minmax({vertical.at((*point.interval)[0]), vertical.at((*point.interval)[1])});
     taken.push_back({at.x - 0.8, low, at.x + 0.8, high});
   }
   const auto steps = steps_of(chart, marks, plot);

@@ -35,7 +35,7 @@ function card(experiment, titles, refresh) {
 function field(key) {
   const id = `experiment-${key.name}`;
   if (key.form === "flag")
-    return [h("label", { for: id }, h("input", { id, type: "checkbox" }), ` ${label_of(key)}`)];
+    return [h("label", { for: id, class: "flag" }, h("input", { id, type: "checkbox" }), label_of(key))];
   const kind = key.form === "number" ? { type: "number", step: "any" } : { type: "text" };
   const hint = key.example ? `such as ${key.example}` : "";
   return [h("label", { for: id }, label_of(key)), h("input", { id, ...kind, placeholder: hint, required: key.required })];
