@@ -44,7 +44,7 @@ std::vector<json> views_of(const Study& study, const Page& page, const Picture& 
                           render_body(study, page, picture));
   if (page.orbit)
     for (std::size_t frame = 0; frame < views.size(); ++frame)
-      views[frame]["camera_path"] = {camera_of(*page.orbit, static_cast<int>(frame))};
+      views[frame]["camera_path"] = json::array({camera_of(*page.orbit, static_cast<int>(frame))});
   return views;
 }
 

@@ -46,7 +46,7 @@ Scene load_twice(GltfFile& file) {
 GltfFile textured(const json& image, std::vector<float> uvs = {0, 0, 1, 0, 0, 1}) {
   GltfFile file;
   file.primitive()["attributes"]["TEXCOORD_0"] = file.add(bytes_of(uvs), 5126, 3, "VEC2");
-  file.document["images"] = {image};
+  file.document["images"] = json::array({image});
   file.document["textures"] = {{{"source", 0}}};
   file.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
   file.primitive()["material"] = 0;
