@@ -1,5 +1,7 @@
 #include "renderer/scene/convex_clip.h"
 
+#include <cmath>
+
 namespace penumbra {
 
 std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfSpace& side) {
@@ -31,6 +33,28 @@ void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
       for (const glm::dvec3& point : polygon) visit(point);
     }
   }
+}
+
+std::vector<glm::dvec3> body_corners(std::span<const HalfSpace> sides) {
+  std::vector<HalfSpace> unit;
+  for (const HalfSpace& side : sides) unit.push_back(side / glm::length(glm::dvec3(side)));
+  std::vector<glm::dvec3> corners;
+  const auto add = [&](const HalfSpace& a, const HalfSpace& b, const HalfSpace& c) {
+    const glm::dvec3 bc = glm::cross(glm::dvec3(b), glm::dvec3(c));
+    const double volume = glm::dot(glm::dvec3(a), bc);
+    if (std::abs(volume) < 1e-12) return;  // two of them are parallel, or all meet in a line
+    const glm::dvec3 point = -(a.w * bc + b.w * glm::cross(glm::dvec3(c), glm::dvec3(a)) +
+                               c.w * glm::cross(glm::dvec3(a), glm::dvec3(b))) /
+                             volume;
+    const double rounding = 1e-9 * (1.0 + glm::length(point));
+    for (const HalfSpace& side : unit)
+      if (glm::dot(side, glm::dvec4(point, 1.0)) < -rounding) return;
+    corners.push_back(point);
+  };
+  for (std::size_t i = 0; i < unit.size(); ++i)
+    for (std::size_t j = i + 1; j < unit.size(); ++j)
+      for (std::size_t k = j + 1; k < unit.size(); ++k) add(unit[i], unit[j], unit[k]);
+  return corners;
 }
 
 std::array<HalfSpace, 4> side_planes(const glm::dmat4& clip_from_world) {

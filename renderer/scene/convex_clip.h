@@ -21,6 +21,10 @@ std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfS
 void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
                            const std::function<void(const glm::dvec3&)>& visit);
 
+/// Corners of the body that half-spaces enclose; those at infinity are left out. By trying every
+/// three of them: for tens, not for hundreds.
+std::vector<glm::dvec3> body_corners(std::span<const HalfSpace> sides);
+
 /// The half-spaces x >= -w, x <= w, y >= -w, y <= w of a clip matrix, in front of its eye.
 std::array<HalfSpace, 4> side_planes(const glm::dmat4& clip_from_world);
 

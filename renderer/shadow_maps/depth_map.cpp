@@ -234,7 +234,7 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
   program.state.depth_format = target.description().format;
   program.state.depth_test = program.state.depth_write = true;
   program.state.depth_compare = VK_COMPARE_OP_LESS;
-  program.state.depth_clamp = true;
+  program.state.depth_clamp = std::none_of(views.begin(), views.end(), cuts_casters);
   if (strategy == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
 
   std::vector<std::uint64_t> triangles;

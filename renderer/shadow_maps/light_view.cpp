@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "renderer/scene/convex_clip.h"
+#include "renderer/scene/transforms.h"
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -85,6 +86,48 @@ shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double
   view.forward = glm::vec4(axes.forward, 2.0 * half_width / size);
   for (int column = 0; column < 3; ++column) view.unwarp[column][column] = 1.0f;
   return view;
+}
+
+namespace {
+/// Half angle of the widest spot light that is served by one view, degrees.
+constexpr double widest_single_view = 75.0;
+}  // namespace
+
+bool has_six_views(const Light& light) {
+  return light.kind == LightKind::point ||
+         (light.kind == LightKind::spot && light.outer_angle > widest_single_view);
+}
+
+std::vector<shader::MapView> views_around(const WorldLight& light, double widen, double size) {
+  std::vector<ViewAxes> axes{{light.direction, light.up}};
+  double tangent = std::tan(glm::radians(light.source->outer_angle));
+  if (has_six_views(*light.source)) {
+    axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
+            {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
+    tangent = 1.0;
+  }
+  std::vector<shader::MapView> views;
+  for (const ViewAxes& view_axes : axes)
+    views.push_back(make_view(light.position, view_axes, tangent * widen, true, size));
+  return views;
+}
+
+ViewAxes axes_with_down(const WorldLight& light, const glm::dvec3& down) {
+  return {light.direction, across(light.direction, -down)};
+}
+
+void cut_casters(shader::MapView& view, const glm::dvec4& kept) {
+  // Depth is written by the shader, so that z serves to clip alone: 0 <= z. As small as it is here
+  // it never passes w.
+  const glm::dvec4 z = 1e-12 * kept / glm::length(glm::dvec3(kept));
+  for (int column = 0; column < 4; ++column)
+    view.clip_from_world[column].z = static_cast<float>(z[column]);
+}
+
+bool cuts_casters(const shader::MapView& view) {
+  for (int column = 0; column < 4; ++column)
+    if (view.clip_from_world[column].z != 0.0f) return true;
+  return false;
 }
 
 void warp_view(shader::MapView& view, const glm::dmat3& warp, double size) {

@@ -19,6 +19,22 @@ struct ViewAxes {
 shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double half_width,
                           bool perspective, double size);
 
+/// Whether a light shines so wide that six views around it are needed: one view of it would have
+/// few texels left for its middle, and none beyond a right angle.
+bool has_six_views(const Light& light);
+
+/// The view over a spot light's cone, or the six around a light that needs them; `widen` as wide.
+std::vector<shader::MapView> views_around(const WorldLight& light, double widen, double size);
+
+/// Axes of a view from a light, `down` leading towards growing v; it need be neither unit nor
+/// across.
+ViewAxes axes_with_down(const WorldLight& light, const glm::dvec3& down);
+
+/// Lets a view lose what lies outside a half-space, as one does that is drawn with depth cut off
+/// there: for showing what that costs.
+void cut_casters(shader::MapView& view, const glm::dvec4& kept);
+bool cuts_casters(const shader::MapView& view);
+
 /// Bends the plane across the view's axis: the view's clip coordinates x, y, w are multiplied by
 /// `warp`. w stays above 0 over what is to be seen.
 void warp_view(shader::MapView& view, const glm::dmat3& warp, double size);

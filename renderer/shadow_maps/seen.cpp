@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "renderer/scene/convex_clip.h"
+#include "renderer/shadow_maps/light_view.h"
 
 namespace penumbra::shadow_maps {
 
@@ -13,6 +14,13 @@ double depth_of(const CameraMatrices& camera, const glm::dvec3& point) {
 }
 
 namespace {
+
+/// The half-spaces around a spot light's cone; none where it shines too wide for them.
+std::vector<HalfSpace> cone_sides(const WorldLight& light) {
+  if (light.kind != LightKind::spot || has_six_views(*light.source)) return {};
+  const auto sides = side_planes(glm::dmat4(views_around(light, 1.0, 1.0)[0].clip_from_world));
+  return {sides.begin(), sides.end()};
+}
 
 /// The half-spaces that enclose what the camera sees of a slice; `far` may be infinite.
 std::vector<HalfSpace> sides_of(const CameraMatrices& camera, const Slice& slice) {
@@ -45,17 +53,28 @@ std::array<glm::dvec3, 8> corners_of(const CameraMatrices& camera, const Slice& 
   return corners;
 }
 
+std::vector<glm::dvec3> reached_corners(const CameraMatrices& camera, const Slice& slice,
+                                        const WorldLight& light) {
+  const auto cone = cone_sides(light);
+  if (cone.empty() && std::isfinite(slice.far)) {
+    const auto corners = corners_of(camera, slice);
+    return {corners.begin(), corners.end()};
+  }
+  if (cone.empty()) {
+    const auto corners = near_corners(camera);
+    return {corners.begin(), corners.end()};
+  }
+  auto sides = sides_of(camera, slice);
+  sides.insert(sides.end(), cone.begin(), cone.end());
+  return body_corners(sides);
+}
+
 void visit_seen(const ViewFitting& fitting, const Slice& slice,
                 const std::function<void(const glm::dvec3&)>& visit) {
-  const auto sides = sides_of(fitting.camera, slice);
-  std::vector<glm::dvec3> own;
-  if (std::isfinite(slice.far)) {
-    const auto corners = corners_of(fitting.camera, slice);
-    own.assign(corners.begin(), corners.end());
-  } else {
-    const auto corners = near_corners(fitting.camera);
-    own.assign(corners.begin(), corners.end());
-  }
+  auto sides = sides_of(fitting.camera, slice);
+  const auto cone = cone_sides(fitting.light);
+  sides.insert(sides.end(), cone.begin(), cone.end());
+  const auto own = reached_corners(fitting.camera, slice, fitting.light);
   for (const Bounds& receiver : fitting.fit.receivers) {
     const Bounds box = fitting.scene.near_part(receiver);
     if (box.empty()) continue;

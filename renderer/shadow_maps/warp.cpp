@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "renderer/shadow_maps/light_view.h"
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -12,34 +9,13 @@ namespace {
 /// Sine below which camera and light count as parallel: 3 degrees.
 constexpr double parallel = 0.05;
 
-bool is_perspective(const CameraMatrices& camera) {
-  const glm::dmat4& clip = camera.clip_from_world;
-  return glm::length(glm::dvec3(clip[0].w, clip[1].w, clip[2].w)) > 0.0;
-}
-
 /// Places of the plane across the light, m.
-struct SeenPlane {
-  std::vector<glm::dvec2> points;  ///< which span what is seen
-  glm::dvec2 low{std::numeric_limits<double>::infinity()};
-  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
-
-  void add(const glm::dvec2& point) {
-    points.push_back(point);
-    low = glm::min(low, point);
-    high = glm::max(high, point);
-  }
-};
-
-SeenPlane seen_plane(const ViewFitting& fitting, const Slice& slice, const ViewAxes& axes) {
-  SeenPlane plane;
-  const auto add = [&](const glm::dvec3& point) {
+SeenPlaces places_on_plane(const std::vector<glm::dvec3>& points, const ViewAxes& axes) {
+  SeenPlaces plane;
+  for (const glm::dvec3& point : points)
     plane.add({glm::dot(point, axes.right()), -glm::dot(point, axes.up)});
-  };
-  visit_seen(fitting, slice, add);
-  if (plane.points.empty())
-    for (const glm::dvec3& corner : corners_of(fitting.camera, slice)) add(corner);
   // A plane seen edge-on has an extent all the same.
-  const double least = 1e-6 + 1e-6 * glm::length(plane.high - plane.low);
+  const double least = 1e-6 + 1e-6 * glm::length(plane.size());
   plane.low -= least;
   plane.high += least;
   return plane;
@@ -84,6 +60,47 @@ ViewAxes axes_along(const WorldLight& light, const glm::dvec3& ahead, double sin
 
 }  // namespace
 
+bool has_eye(const CameraMatrices& camera) {
+  const glm::dmat4& clip = camera.clip_from_world;
+  return glm::length(glm::dvec3(clip[0].w, clip[1].w, clip[2].w)) > 0.0;
+}
+
+FocusedView focused_view(const ViewFitting& fitting, const ViewAxes& axes,
+                         const std::vector<glm::dvec3>& points) {
+  const SeenPlaces plane = places_on_plane(points, axes);
+  const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
+  const glm::dvec2 center = 0.5 * (plane.low + plane.high);
+  const glm::dvec2 size = plane.size();
+  const double half = 0.5 * std::max(size.x, size.y);
+  const glm::dvec3 origin =
+      center.x * axes.right() - center.y * axes.up + covered.low.z * axes.forward;
+  FocusedView focused{make_view(origin, axes, half, false, fitting.size), {}, half, center};
+  for (const glm::dvec2& point : plane.points) focused.seen.add((point - center) / half);
+  focused.seen.low = -0.5 * size / half;
+  focused.seen.high = 0.5 * size / half;
+  return focused;
+}
+
+void bend_and_fill(shader::MapView& view, const SeenPlaces& seen, const Bend& bend, double reach,
+                   const ViewFitting& fitting) {
+  glm::dmat3 warp(1.0);
+  if (std::isfinite(bend.before))
+    warp = perspective_warp(bend.across, seen.low.y, seen.high.y, std::max(bend.before, 1e-4));
+  double share = 1.0 - 2.0 * guard_share(fitting.use, fitting.size);
+  if (fitting.use.follows_extent) {
+    // Room for the widest penumbra, but for no more than half of the map.
+    const double narrow = 0.5 * std::min(seen.size().x, seen.size().y);
+    share = std::min(share, std::max(narrow / (narrow + reach), 0.5));
+  }
+  warp_view(view, fill(warp, seen.points, share), fitting.size);
+}
+
+std::vector<glm::dvec3> seen_points(const ViewFitting& fitting, const Slice& slice) {
+  std::vector<glm::dvec3> points;
+  visit_seen(fitting, slice, [&](const glm::dvec3& point) { points.push_back(point); });
+  return points.empty() ? reached_corners(fitting.camera, slice, fitting.light) : points;
+}
+
 std::vector<shader::MapView> fit_warped(const ViewFitting& fitting,
                                         const std::function<double(const WarpInput&)>& distance) {
   const WorldLight& light = fitting.light;
@@ -93,36 +110,16 @@ std::vector<shader::MapView> fit_warped(const ViewFitting& fitting,
   const double sine = glm::length(ahead);
   const ViewAxes axes = axes_along(light, ahead, sine);
   const Slice seen = visible_slice(fitting);
-  const SeenPlane plane = seen_plane(fitting, seen, axes);
-  const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
+  FocusedView focused = focused_view(fitting, axes, seen_points(fitting, seen));
 
-  const glm::dvec2 center = 0.5 * (plane.low + plane.high);
-  const glm::dvec2 size = plane.high - plane.low;
-  const double half = 0.5 * std::max(size.x, size.y);
-  const glm::dvec3 origin =
-      center.x * axes.right() - center.y * axes.up + covered.low.z * axes.forward;
-  shader::MapView view = make_view(origin, axes, half, false, fitting.size);
-
-  // In units of the square from here on.
-  std::vector<glm::dvec2> points;
-  for (const glm::dvec2& point : plane.points) points.push_back((point - center) / half);
-  const double before = sine < parallel || !is_perspective(camera)
-                            ? std::numeric_limits<double>::infinity()
-                            : distance({seen, size.y, sine}) / half;
-  glm::dmat3 warp(1.0);
-  if (std::isfinite(before))
-    warp = perspective_warp((glm::dot(camera.position, axes.right()) - center.x) / half,
-                            -0.5 * size.y / half, 0.5 * size.y / half, std::max(before, 1e-4));
-  double share = 1.0 - 2.0 * guard_share(fitting.use, fitting.size);
-  if (fitting.use.follows_extent) {
-    // Room for the widest penumbra, but for no more than half of the map.
-    const double reach = extent_radius(*light.source) * covered.size().z;
-    share = std::min(
-        share,
-        std::max(0.5 * std::min(size.x, size.y) / (0.5 * std::min(size.x, size.y) + reach), 0.5));
-  }
-  warp_view(view, fill(warp, points, share), fitting.size);
-  std::vector<shader::MapView> views{view};
+  Bend bend{(glm::dot(camera.position, axes.right()) - focused.center.x) / focused.half,
+            std::numeric_limits<double>::infinity()};
+  if (sine >= parallel && has_eye(camera))
+    bend.before = distance({seen, focused.seen.size().y * focused.half, sine}) / focused.half;
+  const double covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes).size().z;
+  bend_and_fill(focused.view, focused.seen, bend,
+                extent_radius(*light.source) * covered / focused.half, fitting);
+  std::vector<shader::MapView> views{focused.view};
   fit_ranges(views, fitting.scene, fitting.fit, true);
   return views;
 }

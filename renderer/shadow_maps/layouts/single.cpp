@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "renderer/shadow_maps/light_view.h"
@@ -7,15 +6,6 @@
 
 namespace penumbra::shadow_maps {
 namespace {
-
-/// Half angle of the widest spot light that is served by one view, degrees. A wider cone's one view
-/// would have few texels left for its middle, and none beyond a right angle.
-constexpr double widest_single_view = 75.0;
-
-bool has_six_views(const Light& light) {
-  return light.kind == LightKind::point ||
-         (light.kind == LightKind::spot && light.outer_angle > widest_single_view);
-}
 
 std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
   const WorldLight& light = fitting.light;
@@ -33,15 +23,7 @@ std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
         center.x * axes.right() + center.y * axes.up + bounds.low.z * axes.forward;
     views.push_back(make_view(origin, axes, half, false, fitting.size));
   } else {
-    std::vector<ViewAxes> axes{{light.direction, light.up}};
-    double tangent = std::tan(glm::radians(light.source->outer_angle));
-    if (has_six_views(*light.source)) {
-      axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
-              {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
-      tangent = 1.0;
-    }
-    for (const ViewAxes& view_axes : axes)
-      views.push_back(make_view(light.position, view_axes, tangent * widen, true, fitting.size));
+    views = views_around(light, widen, fitting.size);
   }
   fit_ranges(views, fitting.scene, fitting.fit, true);
   return views;

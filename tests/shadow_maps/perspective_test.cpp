@@ -1,0 +1,196 @@
+// Perspective shadow maps: the layout whose texels are those of the camera's own picture. Judged by
+// rays that Embree follows.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "drawing.h"
+#include "hard_truth.h"
+#include "renderer/scene/convex_clip.h"
+#include "scenes.h"
+#include "tests/kept_pictures/kept_pictures.h"
+
+namespace penumbra::tests {
+namespace {
+
+constexpr std::uint32_t picture = 128;  // pixels a side
+
+/// Ground that a person looks along, from 2 m above it.
+Scene ground() {
+  Scene scene = empty_scene(2.0, 1.0);
+  add_plate(scene, {-40, -120}, {40, 40}, 0.0);
+  Camera& camera = scene.cameras[0];
+  camera.position = {0, 2, 5};
+  camera.target = {0, 0, -6};
+  camera.up = {0, 1, 0};
+  camera.projection = Projection::perspective;
+  camera.vertical_fov = 50.0;
+  camera.near_plane = 0.1;
+  return scene;
+}
+
+void add_posts(Scene& scene) {
+  for (const double z : {1.0, -1.0, -4.0, -8.0, -14.0, -22.0})
+    for (const double x : {-2.5, 0.0, 2.0})
+      add_box(scene, {x - 0.3, 0.001, z - 0.3}, {x + 0.3, 1.5, z + 0.3});
+}
+
+Light sun_along(const glm::dvec3& direction) {
+  Light light = sun();
+  light.direction = glm::normalize(direction);
+  return light;
+}
+
+Light lamp_towards(const glm::dvec3& position, const glm::dvec3& target, double half_angle) {
+  Light light = lamp(position, half_angle);
+  light.direction = glm::normalize(target - position);
+  return light;
+}
+
+metrics::VisibilityError error_of(const Scene& scene, const ParameterValues& parameters) {
+  const RenderResult result = draw(scene, "shadow-map", parameters, picture);
+  EXPECT_EQ(result.non_finite_pixels, 0u);
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  return visibility_error(result.visibility, truth, result.judged);
+}
+
+double rms_of(const Scene& scene, const ParameterValues& parameters) {
+  return error_of(scene, parameters).rms;
+}
+
+/// Of a picture without shadows.
+double unshadowed_error(const Scene& scene) {
+  const RenderResult result = draw(scene, "none", {}, picture);
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  return visibility_error(result.visibility, truth, result.judged).rms;
+}
+
+/// Root mean square of errors between two rows of the picture.
+double error_of_rows(const RenderResult& result, const ImageF& truth, std::uint32_t first,
+                     std::uint32_t end) {
+  double sum = 0.0, judged = 0.0;
+  for (std::uint32_t y = first; y < end; ++y)
+    for (std::uint32_t x = 0; x < picture; ++x) {
+      if (result.judged.at(x, y, 0) < 0.5f) continue;
+      const double off = static_cast<double>(result.visibility.at(x, y, 0) - truth.at(x, y, 0));
+      sum += off * off;
+      judged += 1.0;
+    }
+  EXPECT_GT(judged, 500.0);
+  return std::sqrt(sum / judged);
+}
+
+TEST(PerspectiveMaps, fit_to_the_corners_of_what_half_spaces_enclose) {
+  // The unit cube without the corner x + y + z > 2.5: seven corners of its own and three on edges.
+  std::vector<HalfSpace> sides{{1, 0, 0, 0},  {0, 1, 0, 0},  {0, 0, 1, 0},     {-1, 0, 0, 1},
+                               {0, -1, 0, 1}, {0, 0, -1, 1}, {-2, -2, -2, 5.0}};
+  std::vector<glm::dvec3> corners = body_corners(sides);
+  EXPECT_EQ(corners.size(), 10u);
+  for (const glm::dvec3& wanted :
+       {glm::dvec3(0, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(0.5, 1, 1), glm::dvec3(1, 1, 0.5)})
+    EXPECT_TRUE(
+        std::any_of(corners.begin(), corners.end(),
+                    [&](const glm::dvec3& corner) { return glm::length(corner - wanted) < 1e-9; }))
+        << wanted.x << ", " << wanted.y << ", " << wanted.z;
+  // Nothing lies within two that exclude each other.
+  sides.push_back({1, 0, 0, -2});
+  EXPECT_TRUE(body_corners(sides).empty());
+}
+
+TEST(PerspectiveMaps, win_near_the_camera_over_one_plain_view_of_the_scene) {
+  Scene scene = ground();
+  add_posts(scene);
+  scene.lights.push_back(sun_along({0.7, -1.0, -0.3}));
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  const auto near_error = [&](const ParameterValues& parameters) {
+    const RenderResult result = draw(scene, "shadow-map", parameters, picture);
+    return error_of_rows(result, truth, picture / 2, picture);
+  };
+  const double plain = near_error({{"map_size", 256}});
+  const double focused = near_error({{"map_size", 256}, {"focus", "seen"}});
+  const double warped = near_error({{"map_size", 256}, {"layout", "perspective"}});
+  EXPECT_LT(warped, 0.5 * plain);
+  EXPECT_LT(warped, 0.8 * focused);
+}
+
+TEST(PerspectiveMaps, without_a_virtual_camera_lose_casters_behind_the_camera) {
+  // A roof behind the viewer whose shadow falls before him: a sun from behind.
+  Scene scene = ground();
+  add_box(scene, {-2, 8, 8}, {2, 8.5, 11});
+  scene.lights.push_back(sun_along({0, -1, -1.2}));
+  const auto kept = error_of(scene, {{"layout", "perspective"}});
+  const auto lost = error_of(scene, {{"layout", "perspective"}, {"virtual_camera", false}});
+  const double none = unshadowed_error(scene);
+  EXPECT_LT(kept.rms, 0.25 * none);
+  // All of the roof's shadow is gone.
+  EXPECT_NEAR(lost.rms, none, 1e-3);
+  EXPECT_GT(none, 0.15);
+}
+
+TEST(PerspectiveMaps, gain_by_cube_clipping) {
+  Scene scene = ground();
+  add_posts(scene);
+  // A lamp that lights a patch, and a sun over all of the ground.
+  for (const Light& light :
+       {lamp_towards({1.2, 4, 0}, {0, 0, -2}, 35), sun_along({0.7, -1.0, -0.3})}) {
+    scene.lights = {light};
+    const auto error = [&](bool clipped) {
+      return rms_of(scene,
+                    {{"layout", "perspective"}, {"map_size", 128}, {"cube_clipping", clipped}});
+    };
+    EXPECT_LT(error(true), 0.9 * error(false)) << light.name;
+  }
+}
+
+TEST(PerspectiveMaps, stay_finite_and_true_wherever_camera_and_light_stand) {
+  Scene scene = ground();
+  add_posts(scene);
+  const glm::dvec3 target{0, 0, -4};
+  Camera& camera = scene.cameras[0];
+  for (int step = 0; step < 12; ++step) {
+    const double angle = step * 0.52359878;
+    camera.target = camera.position + glm::dvec3(11 * std::sin(angle), -2, -11 * std::cos(angle));
+    for (const bool is_lamp : {false, true}) {
+      SCOPED_TRACE((is_lamp ? "lamp" : "sun") + std::string(" at step ") + std::to_string(step));
+      // Lights before, beside and behind the viewer, in the picture too.
+      const glm::dvec3 from(7 * std::cos(1.7 * angle), 3 + 0.3 * step, 7 * std::sin(1.7 * angle));
+      scene.lights = {is_lamp ? lamp_towards(target + from, target, 30 + 3 * step)
+                              : sun_along(-from)};
+      for (const bool clipped : {true, false}) {
+        const auto error = error_of(
+            scene, {{"layout", "perspective"}, {"map_size", 1024}, {"cube_clipping", clipped}});
+        EXPECT_LT(error.false_shadow, 0.06) << "clipped " << clipped;
+        EXPECT_LT(error.missing_shadow, 0.06) << "clipped " << clipped;
+      }
+    }
+  }
+}
+
+TEST(PerspectiveMaps, of_an_orthographic_camera_or_a_parallel_light_are_plain) {
+  // Nothing is bent: as good as the focused view, of a sun right along the view.
+  Scene scene = ground();
+  add_posts(scene);
+  Camera& camera = scene.cameras[0];
+  camera.projection = Projection::orthographic;
+  camera.orthographic_height = 12.0;
+  scene.lights.push_back(sun_along({0.7, -1.0, -0.3}));
+  const double focused = rms_of(scene, {{"map_size", 256}, {"focus", "seen"}});
+  EXPECT_NEAR(rms_of(scene, {{"map_size", 256}, {"layout", "perspective"}}), focused,
+              0.25 * focused);
+}
+
+TEST(PerspectiveMaps, of_a_lamp_wider_than_one_view_are_six_plain_ones) {
+  Scene scene = ground();
+  add_posts(scene);
+  scene.lights.push_back(lamp_towards({0.4, 6, -3}, {0, 0, -3}, 80));
+  const RenderResult wide =
+      draw(scene, "shadow-map", {{"layout", "perspective"}, {"map_size", 64}}, picture);
+  ASSERT_EQ(wide.cost.technique_memory.size(), 1u);
+  EXPECT_EQ(wide.cost.technique_memory[0].bytes, 6u * 64u * 64u * 4u);
+  EXPECT_LT(rms_of(scene, {{"layout", "perspective"}, {"map_size", 512}}), 0.1);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
