@@ -136,7 +136,7 @@ std::string known_names(const fs::path& data) {
   std::sort(imported.begin(), imported.end());
   for (const std::string& id : imported)
     if (is_id(id)) names += id + ", ";
-  return names + "sweep:OxTxL, or the path of a .json, .gltf, .glb or .obj file";
+  return names + generated_forms() + ", or the path of a .json, .gltf, .glb or .obj file";
 }
 
 }  // namespace
@@ -168,12 +168,38 @@ std::vector<SceneInfo> built_in() {
   return list;
 }
 
+std::string generated_forms() {
+  std::string forms;
+  for (const SceneFamily& family : scene_families())
+    forms += (forms.empty() ? "" : ", ") + std::string(family.form);
+  return forms;
+}
+
+std::string generated_forms_explained() {
+  std::string text;
+  for (const SceneFamily& family : scene_families())
+    text += (text.empty() ? "" : "; ") + std::string(family.form) + " is " + family.contents;
+  return text;
+}
+
+std::string ways_to_name_a_scene() {
+  return "Built-in or imported id, " + generated_forms() + ", or a file";
+}
+
+bool is_generated(const std::string& name) {
+  const auto starts = [&](const SceneFamily& family) { return name.starts_with(family.prefix); };
+  const auto is_named = [&](const BuiltIn& entry) { return name == entry.id; };
+  return std::any_of(scene_families().begin(), scene_families().end(), starts) ||
+         std::any_of(built_in_table().begin(), built_in_table().end(), is_named);
+}
+
 std::shared_ptr<const Scene> load(const std::string& name, const fs::path& data) {
   const auto finish = [](Scene scene) {
     validate(scene);
     return std::make_shared<const Scene>(std::move(scene));
   };
-  if (name.rfind("sweep:", 0) == 0) return finish(make_sweep(name));
+  for (const SceneFamily& family : scene_families())
+    if (name.starts_with(family.prefix)) return finish(family.make(name));
   for (const BuiltIn& entry : built_in_table())
     if (name == entry.id) return finish(entry.make());
   if (!data.empty() && is_id(name)) {

@@ -19,10 +19,21 @@ struct SceneInfo {
 /// Built-in scenes, survey scenes first, in a stable order.
 std::vector<SceneInfo> built_in();
 
+/// Names of scenes that are made from numbers, for messages and help: "sweep:OxTxL, fleet:N".
+std::string generated_forms();
+/// The same with what the numbers count.
+std::string generated_forms_explained();
+
+/// What may be given for a scene, for the help of commands.
+std::string ways_to_name_a_scene();
+
+/// Whether a name is that of a built-in scene or of one made from numbers.
+bool is_generated(const std::string& name);
+
 /// Loads SCENE as the contract has it: a built-in id, an imported id (data/scenes/<id>), a path to
-/// a scene JSON, glTF, GLB or OBJ file, or `sweep:OxTxL`. `data` may be empty (no imported scenes).
-/// Throws not_found (field "scene", listing the ids there are) or unreadable naming file and
-/// element.
+/// a scene JSON, glTF, GLB or OBJ file, or a name made from numbers (`sweep:OxTxL`, `fleet:N`).
+/// `data` may be empty (no imported scenes). Throws not_found (field "scene", listing the ids there
+/// are) or unreadable naming file and element.
 std::shared_ptr<const Scene> load(const std::string& name, const std::filesystem::path& data = {});
 
 /// The files in a folder and below that its scene may be read from: those least deep, scene

@@ -5,6 +5,7 @@
 #include "scenes/built_in/built_in.h"
 #include "scenes/generators/random.h"
 #include "scenes/generators/scene_builder.h"
+#include "scenes/generators/silhouette.h"
 
 namespace penumbra::scenes {
 namespace {
@@ -53,6 +54,7 @@ struct Looks {
   Look skin, dark, glass, metal, rubber;
 };
 
+/// Wings and tailplane.
 void add_surfaces(Mesh& mesh, const Looks& looks) {
   add_part(mesh,
            wing({{-2.6, -3.1, -4.7, 0.025},
@@ -67,10 +69,17 @@ void add_surfaces(Mesh& mesh, const Looks& looks) {
                  {-4.1, -5.9, 0.9, 0.05},
                  {-5.6, -6.1, 2.7, 0.02}}),
            looks.skin, glm::dmat4(1.0), 30.0);
-  // Fins lean outwards by 18 degrees; a wing's span is turned up.
+}
+
+/// Fins lean outwards by 18 degrees; a wing's span is turned up.
+glm::dmat4 fin_place(double side) {
+  return move({0.0, 0.15, 0.85 * side}) * turn_x(-90.0 + 18.0 * side);
+}
+
+void add_fins(Mesh& mesh, const Looks& looks) {
   for (const double side : {-1.0, 1.0})
     add_part(mesh, wing({{-3.0, -5.4, 0.0, 0.06}, {-4.7, -5.7, 1.9, 0.025}}), looks.skin,
-             move({0.0, 0.15, 0.85 * side}) * turn_x(-90.0 + 18.0 * side), 30.0);
+             fin_place(side), 30.0);
 }
 
 void add_body(Mesh& mesh, const Looks& looks) {
@@ -121,6 +130,37 @@ void add_gear(Mesh& mesh, const Looks& looks) {
   }
 }
 
+/// Coleman's planes: one that cuts wings, tailplane and fuselage into an upper and a lower half,
+/// and one for each fin, which share a texture (2006, 5). The fin's reaches down into the fuselage,
+/// so that its shadow reaches the fin's root.
+void add_shadow_planes(Scene& scene, const Looks& looks, const glm::dmat4& jet) {
+  Mesh flat, fin;
+  add_surfaces(flat, looks);
+  add_body(flat, looks);
+  add_part(fin,
+           wing({{-2.6, -5.33, -0.45, 0.06}, {-3.0, -5.4, 0.0, 0.06}, {-4.7, -5.7, 1.9, 0.025}}),
+           looks.skin);
+  ShadowPlane level;
+  level.name = "wings and fuselage";
+  level.right = {1.0, 0.0, 0.0};
+  level.up = {0.0, 0.0, -1.0};
+  level.size = {12.8, 9.8};
+  level.texture = "wings and fuselage";
+  scene.textures.push_back(silhouette_texture(level.texture, flat, level, 512));
+  ShadowPlane upright;
+  upright.center = {-4.15, 0.0, 0.75};
+  upright.right = {1.0, 0.0, 0.0};
+  upright.up = {0.0, 0.0, 1.0};
+  upright.size = {3.4, 2.6};
+  upright.texture = "fin";
+  scene.textures.push_back(silhouette_texture(upright.texture, fin, upright, 256));
+  scene.shadow_planes.push_back(moved_plane(level, jet));
+  for (const double side : {-1.0, 1.0}) {
+    upright.name = side < 0.0 ? "left fin" : "right fin";
+    scene.shadow_planes.push_back(moved_plane(upright, jet * fin_place(side)));
+  }
+}
+
 }  // namespace
 
 /// A jet of flat parts that stands on an apron under a high sun: wings, tailplanes and fins shadow
@@ -137,9 +177,12 @@ Scene make_aircraft() {
   b.ground({-24.0, -24.0}, {24.0, 24.0}, apron);
   Mesh mesh;
   add_surfaces(mesh, looks);
+  add_fins(mesh, looks);
   add_body(mesh, looks);
   add_gear(mesh, looks);
-  b.place(b.add_mesh("jet", std::move(mesh)), move({0.0, 1.70, 0.0}) * turn_y(22.0), "jet");
+  const glm::dmat4 place = move({0.0, 1.70, 0.0}) * turn_y(22.0);
+  b.place(b.add_mesh("jet", std::move(mesh)), place, "jet");
+  add_shadow_planes(b.scene, looks, place);
   b.spot("sun", {-14.0, 30.0, 13.0}, {0.0, 1.0, 0.0}, {1.0f, 0.95f, 0.86f}, 1.25f, 32.0, disc(0.25))
       .inner_angle = 24.0;
   b.camera("main", {-9.2, 7.0, 11.6}, {-0.6, 1.1, 0.9}, 48.0);
@@ -154,6 +197,8 @@ Scene make_fleet(int count) {
   Scene scene = make_aircraft();
   scene.id = "fleet:" + std::to_string(count);
   scene.title = std::to_string(count) + " jets on an apron";
+  // Planes are generated once for all copies of a mesh.
+  scene.shadow_planes.clear();
   const Instance jet = scene.instances.back();
   scene.instances.pop_back();
   const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
@@ -170,6 +215,14 @@ Scene make_fleet(int count) {
   }
   scene.cameras.front().position = {-16.0, 20.0, 26.0};
   return scene;
+}
+
+Scene make_named_fleet(const std::string& name) {
+  const Error error =
+      bad_value("scene", "'" + name + "' is no fleet: fleet:<aircraft 1..400>, such as fleet:20");
+  const int count = numbers_of(name, "fleet:", 1, error).front();
+  if (count < 1 || count > 400) throw error;
+  return make_fleet(count);
 }
 
 }  // namespace penumbra::scenes

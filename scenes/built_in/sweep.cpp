@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
-#include "renderer/error.h"
 #include "scenes/built_in/built_in.h"
 #include "scenes/generators/random.h"
 #include "scenes/generators/scene_builder.h"
@@ -20,17 +18,7 @@ SweepSize parse(const std::string& name) {
   const Error error =
       bad_value("scene", "'" + name + "' is no sweep scene: sweep:<objects 1..1000>x<triangles " +
                              "50..100000>x<lights 1..8>, such as sweep:25x1600x2");
-  const std::string prefix = "sweep:";
-  if (name.rfind(prefix, 0) != 0) throw error;
-  int values[3] = {};
-  const char* at = name.data() + prefix.size();
-  const char* end = name.data() + name.size();
-  for (int i = 0; i < 3; ++i) {
-    const auto [stop, state] = std::from_chars(at, end, values[i]);
-    if (state != std::errc() || stop == at) throw error;
-    if (i < 2 ? (stop == end || *stop != 'x') : stop != end) throw error;
-    at = stop + 1;
-  }
+  const std::vector<int> values = numbers_of(name, "sweep:", 3, error);
   const SweepSize size{values[0], values[1], values[2]};
   if (size.objects < 1 || size.objects > 1000 || size.triangles < 50 || size.triangles > 100000 ||
       size.lights < 1 || size.lights > 8)

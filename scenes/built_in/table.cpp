@@ -32,7 +32,22 @@ const std::vector<BuiltIn>& built_in_table() {
        make_aircraft},
       {"teapot", "A teapot on a table",
        "a model of round parts that shadow each other: what occluder textures are bad at",
-       make_teapot}};
+       make_teapot},
+      {"trees", "Trees on a meadow",
+       "60 copies of one tree, near and far: casters that a part of a map can leave out",
+       make_trees},
+      {"village", "Two houses around a yard",
+       "two houses and their yard as one mesh: nothing of it can be left out of any map",
+       make_village},
+      {"tower", "A lattice tower",
+       "iron lattice of about 10,800 triangles: thin casters in front "
+       "of thin casters",
+       make_tower},
+      {"water-tower", "A water tower at night",
+       "a tank on legs under one spot lamp: map size against the width of its cone",
+       make_water_tower},
+      {"town", "A town of a million triangles",
+       "streets of houses, gardens and a church, near and far: what scale costs", make_town}};
   return table;
 }
 

@@ -1,30 +1,10 @@
 #include <string>
 
-#include "scenes/built_in/trees.h"
+#include "scenes/built_in/outdoors.h"
 #include "scenes/built_in/warehouse_parts.h"
 #include "scenes/generators/random.h"
 
 namespace penumbra::scenes {
-
-Mesh make_tree(const Look& bark, const Look& leaves, std::uint32_t seed) {
-  Random random(seed);
-  Mesh mesh;
-  add_part(mesh,
-           tube({{0.0, -0.3, 0.0}, {0.02, 0.8, 0.0}, {0.1, 2.0, 0.05}, {0.05, 3.6, 0.1}},
-                {0.30, 0.19, 0.16, 0.08}, 10),
-           bark, glm::dmat4(1.0), 60.0);
-  for (int i = 0; i < 9; ++i) {
-    const glm::dvec2 c = circle(40.0 * i * 3.0 + random.range(-20.0, 20.0));
-    const double height = 2.7 + 0.34 * i,
-                 reach = 1.15 * (1.0 - 0.085 * i) * (i % 3 == 0 ? 0.4 : 1.0);
-    const double size = random.range(0.85, 1.2) * (1.0 - 0.03 * i);
-    add_part(mesh, boulder(seed * 17 + static_cast<std::uint32_t>(i), 0.9, 14, 9), leaves,
-             move({reach * c.x, height, reach * c.y}) * turn_y(random.range(0.0, 360.0)) *
-                 stretch({size, 0.82 * size, size}),
-             50.0);
-  }
-  return mesh;
-}
 
 void add_crane(SceneBuilder& b) {
   const Look yellow = b.look("crane yellow", {0.86f, 0.62f, 0.08f}, b.texture("painted_metal", 54),

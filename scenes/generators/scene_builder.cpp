@@ -78,6 +78,18 @@ Light& SceneBuilder::spot(const std::string& name, const glm::dvec3& position,
   return scene.lights.back();
 }
 
+Light& SceneBuilder::sun(const glm::dvec3& direction, const glm::vec3& color, float intensity) {
+  Light light;
+  light.name = "sun";
+  light.kind = LightKind::directional;
+  light.direction = glm::normalize(direction);
+  light.color = color;
+  light.intensity = intensity;
+  light.extent = disc(0.265);
+  scene.lights.push_back(light);
+  return scene.lights.back();
+}
+
 Camera& SceneBuilder::camera(const std::string& name, const glm::dvec3& position,
                              const glm::dvec3& target, double vertical_fov) {
   Camera camera;

@@ -38,6 +38,8 @@ class SceneBuilder {
   Light& spot(const std::string& name, const glm::dvec3& position, const glm::dvec3& target,
               const glm::vec3& color, float intensity, double outer_angle,
               const LightExtent& extent);
+  /// Directional light from a disc as wide as the sun in the sky. `direction` need not be unit.
+  Light& sun(const glm::dvec3& direction, const glm::vec3& color, float intensity);
   Camera& camera(const std::string& name, const glm::dvec3& position, const glm::dvec3& target,
                  double vertical_fov);
 

@@ -1,5 +1,6 @@
 #include "scenes/generators/solid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -133,9 +134,8 @@ Mesh to_mesh(const Solid& solid, double crease, double uv_scale) {
   return mesh;
 }
 
-void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform, std::uint32_t material) {
+void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform) {
   const auto first_vertex = static_cast<std::uint32_t>(mesh.positions.size());
-  const auto first_index = static_cast<std::uint32_t>(mesh.indices.size());
   const glm::dmat3 linear(transform);
   const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
   const bool mirrored = glm::determinant(linear) < 0.0;
@@ -144,16 +144,41 @@ void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform, std::uin
   for (const glm::vec3& normal : piece.normals)
     mesh.normals.emplace_back(glm::normalize(normal_matrix * glm::dvec3(normal)));
   mesh.uvs.insert(mesh.uvs.end(), piece.uvs.begin(), piece.uvs.end());
-  for (std::size_t i = 0; i < piece.indices.size(); i += 3) {
-    mesh.indices.push_back(first_vertex + piece.indices[i]);
-    mesh.indices.push_back(first_vertex + piece.indices[i + (mirrored ? 2 : 1)]);
-    mesh.indices.push_back(first_vertex + piece.indices[i + (mirrored ? 1 : 2)]);
+  for (const Primitive& part : piece.primitives) {
+    const auto first_index = static_cast<std::uint32_t>(mesh.indices.size());
+    for (std::size_t i = part.first_index; i < part.first_index + part.index_count; i += 3) {
+      mesh.indices.push_back(first_vertex + piece.indices[i]);
+      mesh.indices.push_back(first_vertex + piece.indices[i + (mirrored ? 2 : 1)]);
+      mesh.indices.push_back(first_vertex + piece.indices[i + (mirrored ? 1 : 2)]);
+    }
+    if (!mesh.primitives.empty() && mesh.primitives.back().material == part.material)
+      mesh.primitives.back().index_count += part.index_count;
+    else
+      mesh.primitives.push_back({first_index, part.index_count, part.material});
   }
-  const auto count = static_cast<std::uint32_t>(piece.indices.size());
-  if (!mesh.primitives.empty() && mesh.primitives.back().material == material)
-    mesh.primitives.back().index_count += count;
-  else
-    mesh.primitives.push_back({first_index, count, material});
+}
+
+void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform, std::uint32_t material) {
+  Mesh one = piece;
+  one.primitives = {{0, static_cast<std::uint32_t>(piece.indices.size()), material}};
+  append(mesh, one, transform);
+}
+
+void gather_materials(Mesh& mesh) {
+  std::vector<Primitive> gathered;
+  std::vector<std::uint32_t> indices;
+  for (const Primitive& first : mesh.primitives) {
+    const auto is_same = [&](const Primitive& part) { return part.material == first.material; };
+    if (std::any_of(gathered.begin(), gathered.end(), is_same)) continue;
+    const auto start = static_cast<std::uint32_t>(indices.size());
+    for (const Primitive& part : mesh.primitives)
+      if (is_same(part))
+        indices.insert(indices.end(), mesh.indices.begin() + part.first_index,
+                       mesh.indices.begin() + part.first_index + part.index_count);
+    gathered.push_back({start, static_cast<std::uint32_t>(indices.size()) - start, first.material});
+  }
+  mesh.indices = std::move(indices);
+  mesh.primitives = std::move(gathered);
 }
 
 }  // namespace penumbra::scenes

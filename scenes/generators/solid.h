@@ -34,6 +34,12 @@ Mesh to_mesh(const Solid& solid, double crease, double uv_scale = 1.0);
 /// material share a primitive. Mirroring turns triangles round, so that outside stays outside.
 void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform, std::uint32_t material);
 
+/// The same, each part in the material that it has in the piece.
+void append(Mesh& mesh, const Mesh& piece, const glm::dmat4& transform);
+
+/// One primitive for each material, in the order of their first use: fewer draws.
+void gather_materials(Mesh& mesh);
+
 /// Normals from the faces around each vertex, weighted by area; vertices at equal positions count
 /// as one. Faces more than `crease` degrees apart do not share: vertices are split between them.
 void compute_normals(Mesh& mesh, double crease);

@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "scenes/library.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
 #include "server/jobs/catalogue.h"
@@ -20,8 +21,7 @@ int list_scenes(const Session& session, const std::filesystem::path& data) {
   for (const json& scene : document.at("scenes"))
     table.add(
         {text_of(scene.at("id")), text_of(scene.at("title")), text_of(scene.at("description"))});
-  session.print(document, table.text(true) +
-                              "sweep:OxTxL generates O objects of T triangles under L lights.\n");
+  session.print(document, table.text(true) + scenes::generated_forms_explained() + "\n");
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "experiments/sweep/sweep.h"
 #include "experiments/tradeoff/tradeoff.h"
 #include "renderer/error.h"
+#include "scenes/library.h"
 #include "server/cli/experiment_options.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
@@ -166,8 +167,7 @@ void add_experiment_commands(CLI::App& app, Session& session) {
   auto tradeoff = std::make_shared<Options>();
   command = app.add_subcommand(
       "tradeoff", "Search what error each technique buys for how much time, over its parameters");
-  command->add_option("SCENE", tradeoff->scenes, "Built-in or imported id, sweep:OxTxL, or a file")
-      ->required();
+  command->add_option("SCENE", tradeoff->scenes, scenes::ways_to_name_a_scene())->required();
   command->add_option("--techniques", tradeoff->techniques,
                       "Ids, separated by commas [all that have parameters and draw this scene]");
   command->add_option("--size", tradeoff->sizes, "Edge of the picture in pixels [300]");

@@ -4,6 +4,7 @@
 
 #include "experiments/recommend/recommend.h"
 #include "renderer/error.h"
+#include "scenes/library.h"
 #include "server/cli/experiment_options.h"
 #include "server/cli/session.h"
 #include "server/cli/table.h"
@@ -102,8 +103,7 @@ void add_recommend_command(CLI::App& app, Session& session) {
   auto options = std::make_shared<RecommendOptions>();
   CLI::App* command = app.add_subcommand(
       "recommend", "Which technique, layout and parameters for a scene and a budget");
-  command->add_option("SCENE", options->asked.scene,
-                      "Built-in or imported id, sweep:OxTxL, or a file");
+  command->add_option("SCENE", options->asked.scene, scenes::ways_to_name_a_scene());
   command->add_option("--budget-ms,--time-ms", options->asked.budget_ms,
                       "Milliseconds that a frame may take [50: 20 frames a second]");
   CLI::Option* bytes = command->add_option("--memory-bytes", options->asked.memory_bytes,

@@ -6,6 +6,7 @@
 
 #include "renderer/error.h"
 #include "scenes/document.h"
+#include "scenes/library.h"
 
 namespace penumbra::server::cli {
 namespace {
@@ -33,7 +34,7 @@ nlohmann::json camera_path_in(const std::filesystem::path& file) {
 
 void RequestOptions::add_to(CLI::App& command) {
   const RenderRequest defaults;
-  command.add_option("SCENE", scene, "Built-in or imported id, sweep:OxTxL, or a file")->required();
+  command.add_option("SCENE", scene, scenes::ways_to_name_a_scene())->required();
   command.add_option("TECHNIQUE", technique, "Id of a technique or preset")->required();
   command.add_option("--set", sets, "Parameter of the technique, name=value; may be repeated")
       ->allow_extra_args(false);

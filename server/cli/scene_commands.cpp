@@ -93,8 +93,7 @@ void add_scene_commands(CLI::App& app, Session& session) {
 );
 
 CLI::App* out = app.add_subcommand("export-scene", "Write a scene as binary glTF");
-out->add_option("SCENE", options->scene, "Built-in or imported id, sweep:OxTxL, or a file")
-    ->required();
+out->add_option("SCENE", options->scene, scenes::ways_to_name_a_scene())->required();
 out->add_option("--out", options->out, "File, .glb")->required();
 out->add_option("--data", options->data, "Folder of imported scenes")->capture_default_str();
 add_json_flag(*out, session);

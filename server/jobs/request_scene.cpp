@@ -6,7 +6,6 @@
 #include <mutex>
 #include <optional>
 #include <semaphore>
-#include <set>
 
 #include "renderer/error.h"
 #include "scenes/library.h"
@@ -20,15 +19,6 @@ namespace {
 /// take seconds and a gigabyte.
 constexpr int most_at_once = 2;
 constexpr auto patience = std::chrono::seconds(20);
-
-bool is_generated(const std::string& name) {
-  static const std::set<std::string> ids = [] {
-    std::set<std::string> list;
-    for (const scenes::SceneInfo& info : scenes::built_in()) list.insert(info.id);
-    return list;
-  }();
-  return ids.contains(name) || name.starts_with("sweep:");
-}
 
 /// An imported scene is a folder data/scenes/<id>, or a file of that stem.
 std::string id_of(const fs::directory_entry& entry) {
@@ -114,8 +104,8 @@ HashedScene load_now(const std::string& name, const fs::path& data) {
   std::string known;
   for (const scenes::SceneInfo& info : scenes::built_in()) known += info.id + ", ";
   for (const std::string& id : imported_scenes(data)) known += id + ", ";
-  throw not_found("scene", "there is no scene \"" + name + "\"; there are " + known +
-                               "and sweep:OBJECTSxTRIANGLESxLIGHTS");
+  throw not_found("scene", "there is no scene \"" + name + "\"; there are " + known + "and " +
+                               scenes::generated_forms());
 }
 
 }  // namespace
@@ -147,7 +137,7 @@ nlohmann::json about_imported_scene(const fs::path& data, const std::string& id)
 }
 
 HashedScene load_request_scene(const std::string& name, const RequestContext& context) {
-  const bool generated = is_generated(name);
+  const bool generated = scenes::is_generated(name);
   const bool path_like = name.find_first_of(std::string_view("/\\\0", 3)) != std::string::npos ||
                          name.starts_with(".");
   const std::string stamp = generated || path_like ? "" : stamp_of(name, context.data);
