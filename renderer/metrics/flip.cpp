@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "renderer/metrics/check.h"
 #include "renderer/metrics/color.h"
@@ -105,17 +106,94 @@ struct RowFeatures {
   std::vector<double> points;
 };
 
+/// Columns of each row, in runs.
+using RowRuns = std::vector<std::vector<Columns>>;
+
+/// Where two pictures differ within some distance: elsewhere FLIP is zero, whatever is there.
+/// Columns are told apart in blocks.
+class Neighbourhoods {
+ public:
+  template <class T>
+  Neighbourhoods(const Image<T>& picture, const Image<T>& reference, std::size_t radius)
+      : width_(picture.width),
+        blocks_((picture.width + block - 1) / block),
+        marked_(picture.height, std::vector<char>(blocks_, 0)) {
+    for (std::uint32_t y = 0; y < picture.height; ++y)
+      for (std::uint32_t x = 0; x < picture.width; ++x)
+        if (!std::equal(&picture.at(x, y, 0), &picture.at(x, y, 0) + 3, &reference.at(x, y, 0)))
+          mark(x, y, radius);
+  }
+
+  /// Marks every row within the radius of a marked one.
+  void widen(std::size_t radius) {
+    const auto before = marked_;
+    const std::size_t rows = marked_.size();
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      std::size_t filled = 0;  // rows before it are marked already
+      for (std::size_t y = 0; y < rows; ++y) {
+        if (before[y][b] == 0) continue;
+        const std::size_t last = std::min(y + radius + 1, rows);
+        for (std::size_t row = std::max(filled, y - std::min(radius, y)); row < last; ++row)
+          marked_[row][b] = 1;
+        filled = last;
+      }
+    }
+  }
+
+  RowRuns runs() const {
+    RowRuns rows(marked_.size());
+    for (std::size_t y = 0; y < rows.size(); ++y)
+      for (std::size_t b = 0; b < blocks_; ++b) {
+        if (marked_[y][b] == 0) continue;
+        if (rows[y].empty() || rows[y].back().end < b * block) rows[y].push_back({b * block, 0});
+        rows[y].back().end = std::min((b + 1) * block, width_);
+      }
+    return rows;
+  }
+
+ private:
+  static constexpr std::size_t block = 16;
+
+  void mark(std::size_t x, std::size_t y, std::size_t radius) {
+    const std::size_t last = std::min((x + radius) / block, blocks_ - 1);
+    for (std::size_t b = (x - std::min(radius, x)) / block; b <= last; ++b) marked_[y][b] = 1;
+  }
+
+  std::size_t width_;
+  std::size_t blocks_;
+  std::vector<std::vector<char>> marked_;
+};
+
+/// What is compared, and what that takes to be filtered horizontally.
+struct Extent {
+  RowRuns compared;
+  RowRuns filtered;
+
+  template <class T>
+  Extent(const Image<T>& picture, const Image<T>& reference, std::size_t radius) {
+    Neighbourhoods near(picture, reference, radius);
+    near.widen(radius);
+    compared = near.runs();
+    near.widen(radius);
+    filtered = near.runs();
+  }
+};
+
 /// Filters one picture row by row, downwards; borders repeat.
 template <class T>
 class FilteredPicture {
  public:
-  FilteredPicture(const Image<T>& picture_, const Kernels& kernels_)
+  /// `first`: the first row that is asked for.
+  FilteredPicture(const Image<T>& picture_, const Kernels& kernels_, const Extent& extent_,
+                  std::uint32_t first)
       : picture(picture_),
         kernels(kernels_),
+        extent(extent_),
         radius(kernels_.radius()),
         padded(3, picture_.width + 2 * radius, 1),
         horizontal(planes, picture_.width, 2 * radius + 1),
-        vertical(outputs, picture_.width, 1) {}
+        vertical(outputs, picture_.width, 1),
+        rows_read(first - static_cast<std::uint32_t>(std::min<std::size_t>(first, radius))) {}
 
   /// Row `y`; rows must be asked for in order.
   void read(std::uint32_t y, RowFeatures& out);
@@ -133,36 +211,49 @@ class FilteredPicture {
     outputs
   };
 
+  void pad_row(std::uint32_t y);
   void filter_horizontally(std::uint32_t y);
   void filter_vertically(std::uint32_t y, Plane plane, const Kernel& kernel, Output output);
+  void find_features(const Columns& run, RowFeatures& out);
 
   const Image<T>& picture;
   const Kernels& kernels;
+  const Extent& extent;
   std::size_t radius;
   RowRing padded;  ///< opponent colour of one row, its ends repeated
   RowRing horizontal;
   RowRing vertical;
-  std::uint32_t rows_read = 0;
+  std::uint32_t rows_read;
 };
 
 template <class T>
-void FilteredPicture<T>::filter_horizontally(std::uint32_t y) {
+void FilteredPicture<T>::pad_row(std::uint32_t y) {
   const std::size_t last = picture.width - 1;
-  for (std::size_t x = 0; x < picture.width; ++x) {
-    const T* pixel = &picture.at(static_cast<std::uint32_t>(x), y, 0);
-    const glm::dvec3 opponent = opponent_from_linear(
-        {linear_from_srgb(pixel[0]), linear_from_srgb(pixel[1]), linear_from_srgb(pixel[2])});
-    for (std::size_t c = 0; c < 3; ++c)
-      padded.row(c, 0)[radius + x] = opponent[static_cast<int>(c)];
+  for (const Columns& run : extent.filtered[y]) {
+    const std::size_t end = std::min<std::size_t>(run.end + radius, picture.width);
+    for (std::size_t x = run.begin - std::min(run.begin, radius); x < end; ++x) {
+      const T* pixel = &picture.at(static_cast<std::uint32_t>(x), y, 0);
+      const glm::dvec3 opponent = opponent_from_linear(
+          {linear_from_srgb(pixel[0]), linear_from_srgb(pixel[1]), linear_from_srgb(pixel[2])});
+      for (std::size_t c = 0; c < 3; ++c)
+        padded.row(c, 0)[radius + x] = opponent[static_cast<int>(c)];
+    }
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const std::span<double> row = padded.row(c, 0);
     std::fill_n(row.begin(), radius, row[radius]);
     std::fill_n(row.end() - static_cast<std::ptrdiff_t>(radius), radius, row[radius + last]);
   }
+}
+
+template <class T>
+void FilteredPicture<T>::filter_horizontally(std::uint32_t y) {
+  if (extent.filtered[y].empty()) return;
+  pad_row(y);
   const auto filter = [&](std::size_t channel, const Kernel& kernel, Plane plane) {
-    filter_row(std::span<const double>(padded.row(channel, 0)).subspan(radius - radius_of(kernel)),
-               kernel, horizontal.row(plane, y));
+    const auto row = std::span<const double>(padded.row(channel, 0));
+    for (const Columns& run : extent.filtered[y])
+      filter_row(row.subspan(radius - radius_of(kernel)), kernel, horizontal.row(plane, y), run);
   };
   filter(0, kernels.achromatic, achromatic);
   filter(1, kernels.red_green, red_green);
@@ -179,10 +270,26 @@ void FilteredPicture<T>::filter_vertically(std::uint32_t y, Plane plane, const K
   const auto last = static_cast<std::ptrdiff_t>(picture.height) - 1;
   const auto first =
       static_cast<std::ptrdiff_t>(y) - static_cast<std::ptrdiff_t>(radius_of(kernel));
+  std::vector<const double*> rows;
   for (std::size_t j = 0; j < kernel.size(); ++j) {
     const auto row = std::clamp<std::ptrdiff_t>(first + static_cast<std::ptrdiff_t>(j), 0, last);
-    add_scaled(horizontal.row(plane, static_cast<std::size_t>(row)), kernel[j],
-               vertical.row(output, 0));
+    rows.push_back(horizontal.row(plane, static_cast<std::size_t>(row)).data());
+  }
+  for (const Columns& run : extent.compared[y])
+    add_filtered(
+        kernel, [&](std::size_t j) { return rows[j]; }, vertical.row(output, 0), run);
+}
+
+template <class T>
+void FilteredPicture<T>::find_features(const Columns& run, RowFeatures& out) {
+  const auto value = [&](Output output, std::size_t x) { return vertical.row(output, 0)[x]; };
+  for (std::size_t x = run.begin; x < run.end; ++x) {
+    const glm::dvec3 rgb =
+        linear_from_opponent({value(lightness, x), value(red_green_out, x), value(blue_yellow, x)});
+    out.lab[x] = hunt_lab_from_linear(glm::clamp(rgb, 0.0, 1.0));
+    // Detectors look at Y scaled to 0..1; the offset of 16 vanishes, their weights sum to 0.
+    out.edges[x] = std::hypot(value(edge_x, x), value(edge_y, x)) / 116.0;
+    out.points[x] = std::hypot(value(point_x, x), value(point_y, x)) / 116.0;
   }
 }
 
@@ -192,7 +299,8 @@ void FilteredPicture<T>::read(std::uint32_t y, RowFeatures& out) {
     filter_horizontally(rows_read);
 
   for (std::size_t output = 0; output < outputs; ++output)
-    std::ranges::fill(vertical.row(output, 0), 0.0);
+    for (const Columns& run : extent.compared[y])
+      std::fill(&vertical.row(output, 0)[run.begin], vertical.row(output, 0).data() + run.end, 0.0);
   filter_vertically(y, achromatic, kernels.achromatic, lightness);
   filter_vertically(y, red_green, kernels.red_green, red_green_out);
   filter_vertically(y, wide, kernels.blue_yellow_wide, blue_yellow);
@@ -205,15 +313,7 @@ void FilteredPicture<T>::read(std::uint32_t y, RowFeatures& out) {
   out.lab.resize(picture.width);
   out.edges.resize(picture.width);
   out.points.resize(picture.width);
-  const auto value = [&](Output output, std::size_t x) { return vertical.row(output, 0)[x]; };
-  for (std::size_t x = 0; x < picture.width; ++x) {
-    const glm::dvec3 rgb =
-        linear_from_opponent({value(lightness, x), value(red_green_out, x), value(blue_yellow, x)});
-    out.lab[x] = hunt_lab_from_linear(glm::clamp(rgb, 0.0, 1.0));
-    // Detectors look at Y scaled to 0..1; the offset of 16 vanishes, their weights sum to 0.
-    out.edges[x] = std::hypot(value(edge_x, x), value(edge_y, x)) / 116.0;
-    out.points[x] = std::hypot(value(point_x, x), value(point_y, x)) / 116.0;
-  }
+  for (const Columns& run : extent.compared[y]) find_features(run, out);
 }
 
 /// Colour difference 0..1: exponent 0.7, then the lower 0.4 of the range is given 0.95 of the
@@ -239,27 +339,41 @@ double feature_error(double edges_a, double edges_b, double points_a, double poi
   return std::min(std::sqrt(larger / std::numbers::sqrt2), 1.0);
 }
 
+/// Sums of errors over each row, from the first to before the last.
+template <class T>
+void sum_rows(const Image<T>& picture, const Image<T>& reference, const Kernels& kernels,
+              const Extent& extent, std::uint32_t first, std::uint32_t last,
+              std::vector<double>& sums) {
+  FilteredPicture filtered_picture(picture, kernels, extent, first);
+  FilteredPicture filtered_reference(reference, kernels, extent, first);
+  RowFeatures a;
+  RowFeatures b;
+  for (std::uint32_t y = first; y < last; ++y) {
+    if (extent.compared[y].empty()) continue;
+    filtered_picture.read(y, a);
+    filtered_reference.read(y, b);
+    for (const Columns& run : extent.compared[y])
+      for (std::size_t x = run.begin; x < run.end; ++x) {
+        const double color = color_error(a.lab[x], b.lab[x]);
+        const double feature = feature_error(a.edges[x], b.edges[x], a.points[x], b.points[x]);
+        sums[y] += std::pow(color, 1.0 - feature);
+      }
+  }
+}
+
 template <class T>
 double flip_of(const Image<T>& picture, const Image<T>& reference, double pixels_per_degree) {
   check_pair(picture, reference);
   if (!(pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0))
     throw bad_value("pixels_per_degree", "pixels_per_degree must be from 1 to 1000");
   const Kernels kernels(pixels_per_degree);
-  FilteredPicture filtered_picture(picture, kernels);
-  FilteredPicture filtered_reference(reference, kernels);
-  RowFeatures a;
-  RowFeatures b;
-  double sum = 0.0;
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    filtered_picture.read(y, a);
-    filtered_reference.read(y, b);
-    for (std::size_t x = 0; x < picture.width; ++x) {
-      const double color = color_error(a.lab[x], b.lab[x]);
-      const double feature = feature_error(a.edges[x], b.edges[x], a.points[x], b.points[x]);
-      sum += std::pow(color, 1.0 - feature);
-    }
-  }
-  return sum / static_cast<double>(picture.pixel_count());
+  const Extent extent(picture, reference, kernels.radius());
+  std::vector<double> sums(picture.height);
+  for_bands(picture.height, [&](std::uint32_t first, std::uint32_t last) {
+    sum_rows(picture, reference, kernels, extent, first, last, sums);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0) /
+         static_cast<double>(picture.pixel_count());
 }
 
 }  // namespace

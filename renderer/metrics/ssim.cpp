@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "renderer/metrics/check.h"
 #include "renderer/metrics/metrics.h"
@@ -51,38 +52,50 @@ double index_of(double a, double b, double aa, double bb, double ab) {
          ((a * a + b * b + c1) * (variance_a + variance_b + c2));
 }
 
+/// Sums of the index over each row of places of the window, from the first to before the last.
+template <class T>
+void sum_rows(const Image<T>& picture, const Image<T>& reference, std::uint32_t first,
+              std::uint32_t last, std::vector<double>& sums) {
+  const std::array<double, window> kernel = gaussian();
+  const std::size_t width = picture.width - window + 1;
+  const Columns all{0, width};
+  RowRing raw(planes, picture.width, 1);
+  RowRing filtered(planes, width, window);
+  RowRing moments(planes, width, 1);
+  for (std::uint32_t y = first; y < last + window - 1; ++y) {
+    read_row(picture, reference, y, raw);
+    for (std::size_t plane = 0; plane < planes; ++plane)
+      filter_row(raw.row(plane, 0), kernel, filtered.row(plane, y), all);
+    if (y + 1 < first + window) continue;
+
+    // The window ends at this row.
+    const std::size_t top = y + 1 - window;
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+      const std::span<double> out = moments.row(plane, 0);
+      std::fill(out.begin(), out.end(), 0.0);
+      add_filtered(
+          kernel, [&](std::size_t j) { return filtered.row(plane, top + j).data(); }, out, all);
+    }
+    for (std::size_t x = 0; x < width; ++x)
+      sums[top] += index_of(moments.row(mean_a, 0)[x], moments.row(mean_b, 0)[x],
+                            moments.row(square_a, 0)[x], moments.row(square_b, 0)[x],
+                            moments.row(product, 0)[x]);
+  }
+}
+
 template <class T>
 double ssim_of(const Image<T>& picture, const Image<T>& reference) {
   check_pair(picture, reference);
   if (picture.width < window || picture.height < window)
     throw bad_value("picture", "SSIM needs pictures of at least 11x11 pixels, not " +
                                    shape_text(picture.width, picture.height));
-  const std::array<double, window> kernel = gaussian();
-  const std::size_t width = picture.width - window + 1;
-  RowRing raw(planes, picture.width, 1);
-  RowRing filtered(planes, width, window);
-  RowRing moments(planes, width, 1);
-
-  double sum = 0.0;
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    read_row(picture, reference, y, raw);
-    for (std::size_t plane = 0; plane < planes; ++plane)
-      filter_row(raw.row(plane, 0), kernel, filtered.row(plane, y));
-    if (y + 1 < window) continue;
-
-    // The window ends at this row.
-    for (std::size_t plane = 0; plane < planes; ++plane) {
-      const std::span<double> out = moments.row(plane, 0);
-      std::fill(out.begin(), out.end(), 0.0);
-      for (std::size_t j = 0; j < window; ++j)
-        add_scaled(filtered.row(plane, y + 1 - window + j), kernel[j], out);
-    }
-    for (std::size_t x = 0; x < width; ++x)
-      sum += index_of(moments.row(mean_a, 0)[x], moments.row(mean_b, 0)[x],
-                      moments.row(square_a, 0)[x], moments.row(square_b, 0)[x],
-                      moments.row(product, 0)[x]);
-  }
-  return sum / static_cast<double>(width * (picture.height - window + 1));
+  const auto rows = static_cast<std::uint32_t>(picture.height - window + 1);
+  std::vector<double> sums(rows);
+  for_bands(rows, [&](std::uint32_t first, std::uint32_t last) {
+    sum_rows(picture, reference, first, last, sums);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0) /
+         (static_cast<double>(picture.width - window + 1) * rows);
 }
 
 }  // namespace

@@ -46,6 +46,15 @@ def constant(width, height, rgb):
     return np.full((height, width, 3), rgb, np.uint8)
 
 
+def patched(picture):
+    """The same patches as patched() in pictures.h."""
+    changed = picture.copy()
+    for rows, columns in ((slice(0, 4), slice(0, 5)), (slice(70, 75), slice(93, 100)),
+                          (slice(-1, None), slice(-1, None))):
+        changed[rows, columns] = 255 - picture[rows, columns]
+    return changed
+
+
 def ssim(a, b):
     """Wang et al. 2004 on unrounded Y; scikit-image leaves out the border like the C++."""
     weights = np.array([0.299, 0.587, 0.114])
@@ -142,6 +151,8 @@ if __name__ == '__main__':
     print('flip faint   ', repr(flip(faint, n1)))
     print('flip shadow  ', repr(flip(soft, hard)))
     print('flip shadow at 20 ppd', repr(flip(soft, hard, 20.0)))
+    wide = shadow(200, 150, 40, 60)
+    print('flip patched ', repr(flip(patched(wide), wide)))
     print('flip narrow  ', repr(flip(noise(5, 3, 1), noise(5, 3, 2))))
     for a, b in (((0, 0, 0), (255, 255, 255)), ((0, 255, 0), (0, 0, 255)), ((128, 128, 128),
                  (131, 128, 128)), ((255, 0, 0), (0, 255, 255)), ((10, 20, 30), (200, 40, 60))):

@@ -23,6 +23,11 @@ TEST(Flip, AgreesWithItsPlainDefinitionAtAnotherDistance) {
               1e-9);
 }
 
+TEST(Flip, LooksFarEnoughAroundTheFewPixelsThatDiffer) {
+  const Image8 picture = shadow(200, 150, 40, 60);
+  EXPECT_NEAR(flip(patched(picture), picture), 0.0053251304192169484, 1e-9);
+}
+
 TEST(Flip, RepeatsTheBordersOfPicturesSmallerThanItsKernels) {
   EXPECT_NEAR(flip(noise(5, 3, 1), noise(5, 3, 2)), 0.45152896758448097, 1e-9);
 }

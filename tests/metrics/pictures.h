@@ -53,4 +53,17 @@ inline Image8 faint(Image8 picture) {
   return picture;
 }
 
+/// Inverted in a corner, in a patch further in and in the last pixel; as it was elsewhere.
+inline Image8 patched(Image8 picture) {
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      if ((x < 5 && y < 4) || (x >= 93 && x < 100 && y >= 70 && y < 75) ||
+          (x + 1 == picture.width && y + 1 == picture.height))
+        for (std::uint32_t c = 0; c < 3; ++c) {
+          std::uint8_t& value = picture.at(x, y, c);
+          value = static_cast<std::uint8_t>(255 - value);
+        }
+  return picture;
+}
+
 }  // namespace penumbra::metrics
