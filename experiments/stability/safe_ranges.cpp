@@ -126,13 +126,19 @@ std::string safe_ranges_page(const std::vector<SafeRange>& ranges) {
 
 std::string safe_ranges_quote(const std::string& technique, const std::vector<SafeRange>& ranges) {
   std::string list;
+  bool measured = false;
   for (const SafeRange& range : ranges) {
+    measured = measured || range.technique == technique;
     if (range.technique != technique || !range.ends) continue;
     list += (list.empty() ? "" : ", ") + name_of(range.axis) + " " +
             held(find_axis(technique, range.axis), range);
   }
   return wrapped("**Safe ranges** ([why](../../docs/measurements/safe-ranges.md#" + technique +
-                 ")): " + (list.empty() ? "all axes hold to their end" : list) + ".");
+                 ")): " +
+                 (!measured      ? "not measured"
+                  : list.empty() ? "all axes hold to their end"
+                                 : list) +
+                 ".");
 }
 
 }  // namespace penumbra::experiments::stability
