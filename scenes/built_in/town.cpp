@@ -113,7 +113,7 @@ Scene make_town() {
         const std::uint32_t kind = random.below(8), tree = random.below(3);
         const double back = random.range(0.0, 3.0), bend = random.range(-3.0, 3.0);
         const double aside = random.range(-4.0, 4.0), size = random.range(0.7, 1.2);
-        const bool mirrored = random.uniform() < 0.5, planted = random.uniform() < 0.33;
+        const bool mirrored = random.uniform() < 0.5, planted = random.uniform() < 0.21;
         const double x = column_x(column), z = street_z(street);
         if (planted)
           b.place(trees[tree], move({x + aside, 0.0, z + side * 19.0}) * turn_y(90.0 * bend) *
