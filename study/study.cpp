@@ -5,7 +5,7 @@
 #include <set>
 
 #include "renderer/error.h"
-#include "renderer/render.h"
+#include "requests/schema.h"
 #include "study/digest.h"
 #include "study/faults.h"
 #include "study/study_schema.h"
@@ -189,21 +189,6 @@ void read_pages(const json& document, const TextReader& texts, FaultList& faults
   }
 }
 
-void read_picture_settings(const json& value, PictureSettings& settings) {
-  const auto read = [&](const char* key, std::uint32_t& target, std::uint32_t maximum) {
-    const auto number = value.value(key, std::uint64_t{target});
-    if (number > maximum) {
-      throw bad_value(std::string("picture.") + key, "at most " + std::to_string(maximum));
-    }
-    target = static_cast<std::uint32_t>(number);
-  };
-  read("width", settings.width, RenderLimits::max_size);
-  read("height", settings.height, RenderLimits::max_size);
-  read("supersampling", settings.supersampling, 16);
-  read("light_samples", settings.light_samples, RenderLimits::max_light_samples);
-  settings.seed = value.value("seed", settings.seed);
-}
-
 void read_demographics(const json& list, const TextReader& texts, Study& study) {
   std::set<std::string> ids;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -348,8 +333,9 @@ Study parse_study(const json& document) {
   const TextReader texts(study.languages, faults);
   read_texts(document, texts, study);
   faults.attempt([&] { read_arms(document, faults, study); });
-  faults.attempt(
-      [&] { read_picture_settings(document.value("picture", json::object()), study.picture); });
+  faults.attempt([&] {
+    study.picture = requests::picture_settings(document.value("picture", json::object()));
+  });
   faults.attempt([&] { read_pages(document, texts, faults, study); });
   faults.attempt(
       [&] { read_demographics(document.value("demographics", json::array()), texts, study); });

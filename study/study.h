@@ -86,14 +86,6 @@ struct Practice {
               ///< most realistic first
 };
 
-struct PictureSettings {
-  std::uint32_t width = 600;           ///< pixels
-  std::uint32_t height = 600;          ///< pixels
-  std::uint32_t supersampling = 4;     ///< 1, 4 or 16
-  std::uint32_t light_samples = 1024;  ///< rays per pixel and light
-  std::uint64_t seed = 1;
-};
-
 struct Consent {
   std::string version;
   Texts text;
@@ -179,7 +171,8 @@ struct Study {
   Texts most_label;   ///< most realistic end
   Texts least_label;  ///< least realistic end
   Difficulty difficulty;
-  PictureSettings picture;
+  /// Of all pictures, by the names of a request's fields (requests/fields.h): width, height, ...
+  nlohmann::json picture;
   std::optional<Practice> practice;
   std::vector<Page> pages;
   std::vector<std::size_t> repeats;  ///< indices of pages that are shown a second time, at the end
@@ -243,7 +236,8 @@ std::vector<nlohmann::json> all_renders(const Study& study);
 /// [{"id", "text"}]}]}. Nothing in it tells techniques, scenes, thresholds or the completion code.
 nlohmann::json welcome_document(const Study& study);
 
-/// The embedded JSON Schema of study documents.
-const std::string& study_schema();
+/// JSON Schema of study documents: schema/study.schema.json, the keys of `picture` as requests have
+/// them.
+const nlohmann::json& study_schema();
 
 }  // namespace penumbra::study

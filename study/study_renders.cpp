@@ -27,14 +27,10 @@ json camera_of(const Orbit& orbit, int frame) {
 
 json render_body(const Study& study, const Page& page, const Picture& picture) {
   if (!picture.own.empty()) return {{"picture", picture.own}};
-  json body = {{"scene", page.scene},
-               {"technique", picture.technique},
-               {"parameters", picture.parameters},
-               {"width", study.picture.width},
-               {"height", study.picture.height},
-               {"supersampling", study.picture.supersampling},
-               {"light_samples", study.picture.light_samples},
-               {"seed", study.picture.seed}};
+  json body = study.picture;
+  body["scene"] = page.scene;
+  body["technique"] = picture.technique;
+  body["parameters"] = picture.parameters;
   if (!page.camera.empty()) body["camera"] = page.camera;
   return body;
 }

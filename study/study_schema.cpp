@@ -10,6 +10,7 @@
 
 #include "renderer/embedded_file.h"
 #include "renderer/error.h"
+#include "requests/schema.h"
 #include "study/faults.h"
 #include "study/study.h"
 
@@ -21,16 +22,11 @@ namespace {
 
 using nlohmann::json;
 
-const json& schema_document() {
-  static const json document = json::parse(study_schema());
-  return document;
-}
-
 const valijson::Schema& compiled_schema() {
   static const auto schema = [] {
     auto result = std::make_unique<valijson::Schema>();
     valijson::SchemaParser parser;
-    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schema_document()), *result);
+    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(study_schema()), *result);
     return result;
   }();
   return *schema;
@@ -43,7 +39,7 @@ std::string member_path(const std::string& path, const std::string& key) {
 const json& resolve(const json& schema) {
   if (!schema.contains("$ref")) return schema;
   const auto pointer = schema.at("$ref").get<std::string>().substr(1);
-  return schema_document().at(json::json_pointer(pointer));
+  return study_schema().at(json::json_pointer(pointer));
 }
 
 /// Walks document and schema together, so that an unknown key is named by its own path: the
@@ -121,15 +117,19 @@ void find_innermost(valijson::ValidationResults& results, FaultList& faults) {
 
 }  // namespace
 
-const std::string& study_schema() {
-  static const std::string text(embedded_files().front().text);
-  return text;
+const json& study_schema() {
+  static const json document = [] {
+    json schema = json::parse(embedded_files().front().text);
+    schema.at("properties").at("picture") = requests::picture_schema();
+    return schema;
+  }();
+  return document;
 }
 
 void check_study_schema(const json& document) {
   if (!document.is_object()) throw bad_value("", "a study is a JSON object");
   FaultList faults;
-  find_unknown_keys(document, schema_document(), "", faults);
+  find_unknown_keys(document, study_schema(), "", faults);
   valijson::Validator validator;
   valijson::ValidationResults results;
   if (!validator.validate(compiled_schema(), valijson::adapters::NlohmannJsonAdapter(document),

@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 
 struct RenderOptions {
   RequestOptions request;
-  std::string diagnostic;
-  std::string frames;
   fs::path out;
   fs::path visibility;
   fs::path error;
@@ -126,14 +124,12 @@ std::string people_text(const RenderRecord& record, const json& links) {
 }
 
 int draw(const Session& session, RenderOptions options, bool measure) {
-  check_out(options.out, options.diagnostic);
+  check_out(options.out, options.request.text("diagnostic"));
   check_extension(options.visibility, "visibility", {".exr"});
   check_extension(options.error, "error", {".png"});
-  if (!options.diagnostic.empty()) options.request.keys["diagnostic"] = options.diagnostic;
-  if (!options.frames.empty()) options.request.keys["frames"] = options.frames;
   const CanonicalRequest request = options.request.read(measure);
   if (!measure && !session.json && wanted_files(options).empty())
-    options.out = options.request.technique + ".png";
+    options.out = options.request.text("technique") + ".png";
 
   std::set<std::string> wants = wanted_files(options);
   if (measure) wants.insert({want::cost, want::quality});
@@ -154,18 +150,11 @@ void add(CLI::App& app, Session& session, const std::string& name, const std::st
          bool measure) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand(name, meaning);
-  options->request.add_to(*command);
+  options->request.add_to(*command,
+                          measure ? requests::Commands::measure : requests::Commands::render);
   command->add_option("--out", options->out, "Picture: .png, .jpg, .tif, or .exr in linear light");
   command->add_option("--visibility", options->visibility, "A channel per light, .exr");
   command->add_option("--error", options->error, "Signed error against the reference, .png");
-  if (measure) {
-    command->add_option(
-        "--frames", options->frames,
-        "Frames to time [" + std::to_string(default_frames) + ", fewer of slow ones]");
-  } else {
-    command->add_option("--diagnostic", options->diagnostic,
-                        "Draw this diagnostic picture of the technique instead");
-  }
   add_json_flag(*command, session);
   command->callback([options, &session, measure] {
     session.action = [options, &session, measure] { return draw(session, *options, measure); };

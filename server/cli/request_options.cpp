@@ -5,11 +5,14 @@
 #include <utility>
 
 #include "renderer/error.h"
+#include "requests/reader.h"
 #include "scenes/document.h"
-#include "scenes/library.h"
 
 namespace penumbra::server::cli {
 namespace {
+
+using requests::FieldKind;
+using requests::RequestField;
 
 std::pair<std::string, std::string> split(const std::string& flag, const std::string& text) {
   const std::size_t sign = text.find('=');
@@ -18,84 +21,105 @@ std::pair<std::string, std::string> split(const std::string& flag, const std::st
   return {text.substr(0, sign), text.substr(sign + 1)};
 }
 
-nlohmann::json camera_path_in(const std::filesystem::path& file) {
+nlohmann::json list_in(const std::string& field, const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   if (!(text << stream.rdbuf()))
-    throw bad_value("camera_path", "--camera-path: cannot read " + file.string());
+    throw bad_value(
+        field, "--" + requests::flag_of(*requests::find_field(field)) + ": cannot read " + file);
   try {
-    return scenes::parse_json(text.str(), file.string());
+    return scenes::parse_json(text.str(), file);
   } catch (const Error& error) {
-    throw bad_value("camera_path", error.what());
+    throw bad_value(field, error.what());
   }
+}
+
+/// Adds one of the values of a field that holds several.
+void add_entry(nlohmann::json& request, const RequestField& field, const std::string& entry) {
+  const std::string flag = requests::flag_of(field);
+  const auto [name, value] = split(flag, entry);
+  if (field.kind == FieldKind::changes) return requests::add_change(request, field, name, value);
+  if (request[field.name].contains(name))
+    throw bad_value(name, "--" + flag + " " + name + " is given twice");
+  request[field.name][name] = value;
+}
+
+bool holds_several(const RequestField& field) {
+  return field.kind == FieldKind::parameters || field.kind == FieldKind::changes;
+}
+
+/// What an option's value looks like, where it is no plain one.
+std::string form_of(const RequestField& field) {
+  switch (field.kind) {
+    case FieldKind::parameters:
+      return ", name=value; may be repeated";
+    case FieldKind::changes:
+      return ", NAME.key=value, as in " + requests::change_example(field) + "; may be repeated";
+    case FieldKind::list:
+      return ", from a JSON file";
+    default:
+      return "";
+  }
+}
+
+std::string help_of(const RequestField& field) {
+  std::string text = field.meaning + form_of(field);
+  for (const auto choice : field.allowed)
+    text += (choice == field.allowed.front() ? ": " : ", ") + std::to_string(choice);
+  if (!field.default_value.is_null()) return text + " [" + field.default_value.dump() + "]";
+  return field.default_words.empty() ? text : text + " [" + field.default_words + "]";
+}
+
+std::string argument_name(const RequestField& field) {
+  std::string name = field.name;
+  for (char& letter : name) letter = static_cast<char>(std::toupper(letter));
+  return name;
+}
+
+void add_option(CLI::App& command, RequestOptions& options, const RequestField& field) {
+  const std::string option = "--" + requests::flag_of(field);
+  if (holds_several(field)) {
+    command.add_option(option, options.lists[field.name], help_of(field))->allow_extra_args(false);
+    return;
+  }
+  const auto keep = [&options, name = field.name](const std::string& text) {
+    options.texts[name] = text;
+  };
+  command
+      .add_option_function<std::string>(field.required ? argument_name(field) : option, keep,
+                                        help_of(field))
+      ->required(field.required);
 }
 
 }  // namespace
 
-void RequestOptions::add_to(CLI::App& command) {
-  const RenderRequest defaults;
-  command.add_option("SCENE", scene, scenes::ways_to_name_a_scene())->required();
-  command.add_option("TECHNIQUE", technique, "Id of a technique or preset")->required();
-  command.add_option("--set", sets, "Parameter of the technique, name=value; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--light", lights, "Key of a light, NAME.key=value; may be repeated")
-      ->allow_extra_args(false);
-  command
-      .add_option("--camera-set", camera_sets, "Key of a camera, NAME.key=value; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--camera-path", camera_path,
-                     "JSON file: list of cameras that are drawn in order; the last is the picture");
-  const auto key = [&](const std::string& flag, const std::string& name,
-                       const std::string& meaning) {
-    command.add_option_function<std::string>(
-        "--" + flag, [this, name](const std::string& value) { keys[name] = value; }, meaning);
-  };
-  const auto with_default = [](const std::string& meaning, std::uint64_t value) {
-    return meaning + " [" + std::to_string(value) + "]";
-  };
-  key("width", "width", with_default("Pixels", defaults.width));
-  key("height", "height", with_default("Pixels", defaults.height));
-  key("camera", "camera", "Name of a camera; by default the scene's first");
-  std::string choices;
-  for (const auto choice : RenderLimits::supersampling)
-    choices += (choices.empty() ? "" : ", ") + std::to_string(choice);
-  key("supersampling", "supersampling",
-      with_default("Samples per pixel: " + choices, defaults.supersampling));
-  key("light-samples", "light_samples",
-      with_default("Rays per pixel and light, of techniques that take many",
-                   defaults.light_samples));
-  key("error-bound", "error_bound",
-      "Of the reference: stop once its own error is no more than this, levels of 0..255 "
-      "[no bound]");
-  key("exposure", "exposure",
-      "EV: linear light is multiplied by 2^EV before encoding [what the scene has]");
-  key("seed", "seed", with_default("Of everything random", defaults.seed));
+void RequestOptions::add_to(CLI::App& command, requests::Commands which) {
+  for (const RequestField& field : requests::request_fields())
+    if (field.commands == requests::Commands::all ||
+        (field.commands != requests::Commands::none && field.commands == which))
+      add_option(command, *this, field);
   command.add_option("--data", data, "Folder of imported scenes");
   command.add_option("--device", device, "Vulkan device: part of its name, or its index");
   command.add_flag("--validation", validation, "Turn Vulkan's validation layer on");
 }
 
+std::string RequestOptions::text(const std::string& field) const {
+  const auto found = texts.find(field);
+  return found == texts.end() ? "" : found->second;
+}
+
 CanonicalRequest RequestOptions::read(bool measure) const {
-  std::vector<std::pair<std::string, std::string>> entries{{"scene", scene},
-                                                           {"technique", technique}};
-  entries.insert(entries.end(), keys.begin(), keys.end());
-  nlohmann::json request = request_from_text(entries);
-  // --set names parameters only: it must not reach the keys of the request.
-  for (const std::string& text : sets) {
-    const auto [name, value] = split("set", text);
-    if (request["parameters"].contains(name))
-      throw bad_value(name, "--set " + name + " is given twice");
-    request["parameters"][name] = value;
+  nlohmann::json request = nlohmann::json::object();
+  std::vector<std::pair<std::string, std::string>> plain;
+  for (const auto& [name, value] : texts) {
+    if (requests::find_field(name)->kind == FieldKind::list)
+      request[name] = list_in(name, value);
+    else
+      plain.emplace_back(name, value);
   }
-  for (const std::string& text : lights) {
-    const auto [path, value] = split("light", text);
-    add_override(request, Changed::light, path, value);
-  }
-  for (const std::string& text : camera_sets) {
-    const auto [path, value] = split("camera-set", text);
-    add_override(request, Changed::camera, path, value);
-  }
-  if (!camera_path.empty()) request["camera_path"] = camera_path_in(camera_path);
+  request.update(requests::request_from_text(plain));
+  for (const auto& [name, entries] : lists)
+    for (const std::string& entry : entries) add_entry(request, *requests::find_field(name), entry);
   request["measure"] = measure;
   return read_request(request, context());
 }

@@ -6,25 +6,26 @@
 #include <string>
 #include <vector>
 
+#include "requests/fields.h"
 #include "server/jobs/canonical_request.h"
 
 namespace penumbra::server::cli {
 
-/// The options that say what to draw. Values stay text until the request is read, by the same
-/// function and with the same messages as for HTTP.
+/// The options that say what to draw, one for each field of a request. Values stay text until the
+/// request is read, by the same function and with the same messages as for HTTP.
 struct RequestOptions {
-  std::string scene;
-  std::string technique;
-  std::vector<std::string> sets;            ///< name=value
-  std::vector<std::string> lights;          ///< NAME.key=value
-  std::vector<std::string> camera_sets;     ///< NAME.key=value
-  std::filesystem::path camera_path;        ///< a JSON file, or empty
-  std::map<std::string, std::string> keys;  ///< width, height, ...: those given
+  std::map<std::string, std::string> texts;  ///< of fields with one value: those given
+  /// Of fields with several values: name=value, as given.
+  std::map<std::string, std::vector<std::string>> lists;
   std::filesystem::path data;
   std::string device;
   bool validation = false;
 
-  void add_to(CLI::App& command);
+  /// `which`: the command, where it has options that others lack.
+  void add_to(CLI::App& command, requests::Commands which = requests::Commands::all);
+
+  /// Value of a field; empty where none was given.
+  std::string text(const std::string& field) const;
 
   RequestContext context() const { return {data, device, true}; }
 

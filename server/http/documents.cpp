@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "renderer/error.h"
+#include "requests/schema.h"
 #include "server/http/reply.h"
 #include "server/http/routes.h"
 
@@ -54,7 +55,13 @@ nlohmann::json json_of_yaml(const std::string& text) {
 }
 
 const nlohmann::json& api_document() {
-  static const auto document = json_of_yaml(std::string(embedded_api().front().text));
+  static const auto document = [] {
+    auto api = json_of_yaml(std::string(embedded_api().front().text));
+    api.at("components").at("schemas").at("RenderRequest") = requests::request_schema();
+    for (const char* path : {"/api/v1/image", "/api/v1/plan"})
+      api.at("paths").at(path).at("get")["parameters"] = requests::query_parameters();
+    return api;
+  }();
   return document;
 }
 

@@ -14,7 +14,8 @@ std::span<const EmbeddedFile> embedded_studies();    ///< studies/*.json
 std::span<const EmbeddedFile> embedded_templates();  ///< studies/templates/*.json
 std::span<const EmbeddedFile> embedded_pages();      ///< web/**
 
-/// schema/openapi.yaml as JSON. Merge keys (<<) are resolved.
+/// schema/openapi.yaml as JSON, with what follows from the fields of requests (requests/schema.h).
+/// Merge keys (<<) are resolved.
 const nlohmann::json& api_document();
 
 /// YAML 1.2 (core schema) as JSON. Throws bad_value naming line and column.

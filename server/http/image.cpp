@@ -3,6 +3,7 @@
 #include <semaphore>
 
 #include "renderer/error.h"
+#include "requests/reader.h"
 #include "server/http/renders.h"
 #include "server/http/reply.h"
 #include "server/http/service.h"
@@ -14,7 +15,7 @@ namespace {
 nlohmann::json request_in_query(const Call& call) {
   std::vector<std::pair<std::string, std::string>> entries(call.request.params.begin(),
                                                            call.request.params.end());
-  return request_from_text(entries);
+  return requests::request_from_text(entries);
 }
 
 void get_image(Call& call) {

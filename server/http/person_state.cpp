@@ -16,7 +16,8 @@ std::string page_path(const std::string& token, std::size_t page) {
 
 /// A picture of a page: with `frames`, the addresses of its views, where the page can be turned.
 json image_at(const std::string& url, const study::Study& study, const study::Page& page) {
-  json image = {{"url", url}, {"width", study.picture.width}, {"height", study.picture.height}};
+  json image = {
+      {"url", url}, {"width", study.picture.at("width")}, {"height", study.picture.at("height")}};
   if (!page.orbit) return image;
   image["frames"] = json::array();
   for (int frame = 0; frame < page.orbit->frames; ++frame)

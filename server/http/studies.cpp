@@ -190,10 +190,12 @@ void check_own_picture(Service& service, const study::Study& study, const std::s
     return faults.add(bad_value(path + ".picture", "no such picture was uploaded to this server"));
   const auto [width, height] = size_of_png(*png);
   const auto text = [](auto w, auto h) { return std::to_string(w) + " by " + std::to_string(h); };
-  if (width != study.picture.width || height != study.picture.height)
+  const auto wanted_width = study.picture.at("width").get<std::uint32_t>();
+  const auto wanted_height = study.picture.at("height").get<std::uint32_t>();
+  if (width != wanted_width || height != wanted_height)
     faults.add(bad_value(path + ".picture", "has " + text(width, height) +
                                                 " pixels; the study's pictures (`picture`) have " +
-                                                text(study.picture.width, study.picture.height)));
+                                                text(wanted_width, wanted_height)));
 }
 
 /// Asks for every picture of a page whether it could be drawn.

@@ -1,13 +1,12 @@
 #include "server/jobs/canonical_request.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <utility>
 
 #include "renderer/error.h"
 #include "renderer/frame/common_parameters.h"
 #include "renderer/technique.h"
+#include "requests/reader.h"
 #include "scenes/json_text.h"
 #include "scenes/library.h"
 #include "server/files/digest.h"
@@ -20,114 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Largest integer that every JSON reader keeps exactly.
-constexpr std::uint64_t max_seed = (1ull << 53) - 1;
-constexpr std::size_t max_name = 4096;  // characters: scene names may be paths
-
-std::string shown(const json& value) {
-  std::string text = scenes::json_text(value);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
-}
-
-/// Reads what a request says, key by key; what nobody asked for is an error.
-class Reader {
- public:
-  explicit Reader(const json& request) : request_(request) {
-    if (!request.is_object())
-      throw bad_value("",
-                      "a request is a JSON object, this is " + std::string(request.type_name()));
-  }
-
-  std::string text(const std::string& key, const std::string& fallback, bool required = false) {
-    const json* value = find(key);
-    if (!value || (value->is_null() && !required)) {
-      if (required) throw bad_value(key, "\"" + key + "\" is missing");
-      return fallback;
-    }
-    if (!value->is_string()) throw bad_value(key, key + " must be a text, not " + shown(*value));
-    std::string text = value->get<std::string>();
-    if (text.size() > max_name || text.find('\0') != std::string::npos)
-      throw bad_value(key, key + " is too long or holds a zero character");
-    if (required && text.empty()) throw bad_value(key, key + " is empty");
-    return text;
-  }
-
-  std::uint64_t integer(const std::string& key, std::uint64_t fallback, std::uint64_t low,
-                        std::uint64_t high) {
-    const json* value = find(key);
-    if (!value || value->is_null()) return fallback;
-    const std::string allowed =
-        key + " must be an integer from " + std::to_string(low) + " to " + std::to_string(high);
-    std::uint64_t number = 0;
-    if (value->is_number_unsigned()) {
-      number = value->get<std::uint64_t>();
-    } else if (value->is_number_integer() && value->get<std::int64_t>() >= 0) {
-      number = static_cast<std::uint64_t>(value->get<std::int64_t>());
-    } else if (value->is_number_float()) {
-      const double real = value->get<double>();
-      if (!(real >= 0.0 && real <= 0x1p53) || real != std::floor(real))
-        throw bad_value(key, allowed + ", not " + shown(*value));
-      number = static_cast<std::uint64_t>(real);
-    } else {
-      throw bad_value(key, allowed + ", not " + shown(*value));
-    }
-    if (number < low || number > high) throw bad_value(key, allowed + ", not " + shown(*value));
-    return number;
-  }
-
-  double number(const std::string& key, double fallback, double low, double high) {
-    const json* value = find(key);
-    if (!value || value->is_null()) return fallback;
-    const double number = value->is_number() ? value->get<double>() : low - 1.0;
-    if (!(number >= low && number <= high))
-      throw bad_value(key, key + " must be a number from " + json(low).dump() + " to " +
-                               json(high).dump() + ", not " + shown(*value));
-    return number;
-  }
-
-  bool boolean(const std::string& key, bool fallback) {
-    const json* value = find(key);
-    if (!value || value->is_null()) return fallback;
-    if (!value->is_boolean())
-      throw bad_value(key, key + " must be true or false, not " + shown(*value));
-    return value->get<bool>();
-  }
-
-  json object(const std::string& key) {
-    const json* value = find(key);
-    if (!value || value->is_null()) return json::object();
-    if (!value->is_object()) throw bad_value(key, key + " must be an object, not " + shown(*value));
-    return *value;
-  }
-
-  json list(const std::string& key) {
-    const json* value = find(key);
-    if (!value || value->is_null()) return json::array();
-    if (!value->is_array()) throw bad_value(key, key + " must be a list, not " + shown(*value));
-    return *value;
-  }
-
-  void finish() const {
-    for (const auto& [key, value] : request_.items()) {
-      if (asked_.contains(key)) continue;
-      std::string known;
-      for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
-      throw bad_value(key, "unknown key \"" + key + "\"; a request has " + known);
-    }
-  }
-
- private:
-  const json* find(const std::string& key) {
-    asked_.insert(key);
-    const auto found = request_.find(key);
-    return found == request_.end() ? nullptr : &*found;
-  }
-
-  const json& request_;
-  std::set<std::string> asked_;
-};
-
 /// 1 and 1.0 are one number: one picture has one id.
 json with_real_numbers(const json& value) {
   if (value.is_number_integer()) return value.get<double>();
@@ -135,19 +26,6 @@ json with_real_numbers(const json& value) {
   json copy = value;
   for (auto& entry : copy) entry = with_real_numbers(entry);
   return copy;
-}
-
-std::uint64_t supersampling_of(Reader& reader, std::uint64_t fallback) {
-  const auto& allowed = RenderLimits::supersampling;
-  const std::uint64_t value =
-      reader.integer("supersampling", fallback, allowed.front(), allowed.back());
-  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
-    std::string list;
-    for (const auto choice : allowed) list += (list.empty() ? "" : ", ") + std::to_string(choice);
-    throw bad_value("supersampling",
-                    "supersampling must be one of " + list + ", not " + std::to_string(value));
-  }
-  return value;
 }
 
 /// Overrides of lights or cameras without those that replace nothing.
@@ -216,37 +94,16 @@ CanonicalRequest same_view(const CanonicalRequest& request, const TechniqueDescr
 }  // namespace
 
 CanonicalRequest read_request(const json& request, const RequestContext& context) {
-  const RenderRequest defaults;
-  Reader reader(request);
+  // Cheap checks of plain values go first: nothing is loaded for a request that cannot be.
+  const requests::RequestValues values = requests::read_fields(request);
   CanonicalRequest canonical;
   json& out = canonical.request;
-  out = json::object();
+  out = values.pictured;
+  canonical.measure = values.others.at("measure");
+  canonical.frames = values.others.value("frames", 0u);
 
-  // Cheap checks of plain values go first: nothing is loaded for a request that cannot be.
-  out["scene"] = reader.text("scene", "", true);
-  const std::string technique = reader.text("technique", "", true);
-  const json parameters = reader.object("parameters");
-  out["width"] = reader.integer("width", defaults.width, 1, RenderLimits::max_size);
-  out["height"] = reader.integer("height", defaults.height, 1, RenderLimits::max_size);
-  const std::string camera = reader.text("camera", "");
-  out["supersampling"] = supersampling_of(reader, defaults.supersampling);
-  out["light_samples"] =
-      reader.integer("light_samples", defaults.light_samples, 1, RenderLimits::max_light_samples);
-  out["error_bound"] =
-      reader.number("error_bound", defaults.error_bound, 0.0, RenderLimits::max_error_bound);
-  const double exposure = reader.number("exposure", std::nan(""), -RenderLimits::max_exposure,
-                                        RenderLimits::max_exposure);
-  out["lights"] = without_empty(reader.object("lights"));
-  out["cameras"] = without_empty(reader.object("cameras"));
-  const json path = reader.list("camera_path");
-  out["seed"] = reader.integer("seed", defaults.seed, 0, max_seed);
-  out["diagnostic"] = reader.text("diagnostic", "");
-  canonical.measure = reader.boolean("measure", false);
-  canonical.frames =
-      static_cast<std::uint32_t>(reader.integer("frames", 0, 1, RenderLimits::max_frames));
-  reader.finish();
-
-  canonical.technique = techniques::resolve(technique, techniques::values_from_json(parameters));
+  canonical.technique =
+      techniques::resolve(out["technique"], techniques::values_from_json(out["parameters"]));
   out["technique"] = canonical.technique.technique->id;
   out["parameters"] = techniques::values_to_json(canonical.technique.parameters);
   find_diagnostic(*canonical.technique.technique, out["diagnostic"]);  // throws where unknown
@@ -256,13 +113,14 @@ CanonicalRequest read_request(const json& request, const RequestContext& context
   const HashedScene scene = load_request_scene(out["scene"], context);
   canonical.scene = scene.scene;
   out["scene_hash"] = scene.hash;
-  out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, camera)).name;
-  out["camera_path"] = json::array();
+  out["camera"] = scene.scene->cameras.at(find_camera(*scene.scene, out["camera"])).name;
+  for (const char* changes : {"lights", "cameras"}) out[changes] = without_empty(out[changes]);
+  const json path = std::exchange(out["camera_path"], json::array());
   const auto changed = changed_scene(scene.scene, out);  // throws where something is wrong
   const Camera& own = changed->cameras.at(find_camera(*changed, out["camera"]));
   out["camera_path"] = scenes::camera_path_document(scenes::camera_path(own, path));
-  out["exposure"] =
-      std::isnan(exposure) ? std::log2(static_cast<double>(scene.scene->exposure)) : exposure + 0.0;
+  if (!out.contains("exposure"))
+    out["exposure"] = std::log2(static_cast<double>(scene.scene->exposure));
   out["device"] = context.device;
   out["renderer"] = drawing_version();
   identify(canonical);

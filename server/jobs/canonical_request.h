@@ -5,8 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "renderer/render.h"
 #include "renderer/scene/scene.h"
@@ -34,12 +32,7 @@ struct CanonicalRequest {
   std::uint32_t frames = 0;  ///< frames to time; 0: the measurement chooses
 };
 
-/// Timed frames of a measurement that names no number.
-inline constexpr std::uint32_t default_frames = 9;
-
-/// Reads a request as POST /api/v1/renders has it: scene, technique, parameters, width, height,
-/// camera, camera_path, cameras, supersampling, light_samples, exposure, lights, seed, diagnostic,
-/// measure, frames.
+/// Reads a request as POST /api/v1/renders has it (requests/fields.h).
 /// Throws bad_value, naming the field and what is allowed, for unknown keys, wrong types and values
 /// out of range; not_found for scene, technique or camera.
 CanonicalRequest read_request(const nlohmann::json& request, const RequestContext& context);
@@ -54,18 +47,5 @@ CanonicalRequest baseline_of(const CanonicalRequest& request);
 
 /// What the renderer draws for a canonical request, light overrides applied.
 RenderRequest to_render_request(const CanonicalRequest& request);
-
-/// A request from names and values as text: URL queries, `--set`. Names that are no key of a
-/// request are parameters; `light.NAME.key` is an entry of `lights`, `camera.NAME.key` one of
-/// `cameras`. A name given twice is a bad value.
-nlohmann::json request_from_text(const std::vector<std::pair<std::string, std::string>>& entries);
-
-/// What of a scene a request may change key by key.
-enum class Changed { light, camera };
-
-/// Adds `NAME.key=value` to the `lights` or `cameras` of a request. The value is a number, numbers
-/// separated by commas, JSON, or a word.
-void add_override(nlohmann::json& request, Changed what, const std::string& path,
-                  const std::string& value);
 
 }  // namespace penumbra::server

@@ -6,6 +6,7 @@
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/technique.h"
+#include "requests/fields.h"
 #include "scenes/picture_io.h"
 #include "server/jobs/device_lock.h"
 
@@ -38,9 +39,9 @@ json number_or_null(double value) {
 
 /// Frames that fit a budget at so many milliseconds each, the uncounted first one included.
 std::uint32_t affordable_frames(double frame_ms, double budget_ms = timing_budget_ms) {
-  const double count = frame_ms > 0.0 ? budget_ms / frame_ms - 1.0 : default_frames;
+  const double count = frame_ms > 0.0 ? budget_ms / frame_ms - 1.0 : requests::default_frames;
   return static_cast<std::uint32_t>(
-      std::clamp(count, double{fewest_frames}, double{default_frames}));
+      std::clamp(count, double{fewest_frames}, double{requests::default_frames}));
 }
 
 double frame_ms_of(const Cost& cost) {
@@ -52,12 +53,12 @@ std::uint32_t frames_to_time(Renderer& renderer, const Task& task, const Cost& f
   if (task.request.frames > 0) return task.request.frames;
   double frame_ms = frame_ms_of(first);
   // The very first frame may have spent its time compiling; only a second one tells.
-  if (affordable_frames(frame_ms) < default_frames)
+  if (affordable_frames(frame_ms) < requests::default_frames)
     frame_ms = frame_ms_of(renderer.render(to_render_request(task.request)).cost);
   const std::uint32_t frames = affordable_frames(frame_ms);
-  if (frames < default_frames)
+  if (frames < requests::default_frames)
     notes.push_back("timed over " + std::to_string(frames) + " frames instead of " +
-                    std::to_string(default_frames) + ", since one takes " +
+                    std::to_string(requests::default_frames) + ", since one takes " +
                     std::to_string(std::lround(frame_ms)) + " ms");
   return frames;
 }

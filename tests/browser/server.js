@@ -13,10 +13,10 @@ const start_ms = 60_000;
 const publish_ms = 300_000;
 
 export class Server {
-  static async start() {
+  static async start(served = program) {
     const server = new Server();
     server.data = await mkdtemp(path.join(tmpdir(), "penumbra-browser-"));
-    server.process = spawn(program, ["serve", "--port", "0", "--ops-port", "0", "--data", server.data],
+    server.process = spawn(served, ["serve", "--port", "0", "--ops-port", "0", "--data", server.data],
       { stdio: ["ignore", "pipe", "pipe"] });
     server.log = "";
     server.process.stderr.on("data", (text) => (server.log += text));

@@ -1,6 +1,7 @@
 // Queries of GET /api/v1/image as names and values: lines of NAME=VALUE.
 #include <sstream>
 
+#include "requests/reader.h"
 #include "server/jobs/canonical_request.h"
 #include "tests/fuzz/target.h"
 
@@ -14,6 +15,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     entries.emplace_back(line.substr(0, equals), line.substr(equals + 1));
   }
   fuzz::refuse_only_with({"bad_value", "not_found", "unsupported"},
-                         [&] { server::read_request(server::request_from_text(entries), {}); });
+                         [&] { server::read_request(requests::request_from_text(entries), {}); });
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "study_file.h"
@@ -34,6 +35,12 @@ TEST(Study, TheThesisStudyHasItsSixScenesAndTheReferenceAmongThePictures) {
                                   "warehouse-outside"));
   EXPECT_EQ(study.arms.front().widget, Widget::shelves);
   EXPECT_EQ(study.difficulty.labels.size(), 5u);
+}
+
+TEST(Study, ItsSchemaForEditorsIsTheOneThatIsChecked) {
+  std::ifstream file(PENUMBRA_SOURCE_DIR "/schema/study.schema.json");
+  EXPECT_EQ(json::parse(file), study_schema())
+      << "picture is " << study_schema()["properties"]["picture"];
 }
 
 TEST(Study, EveryFaultIsNamedByItsPath) {

@@ -3,7 +3,7 @@
 import { h } from "/assets/shared/dom.js";
 import { ApiError, get, post } from "/assets/shared/http.js";
 import { ParameterForm } from "./form.js";
-import { finished, labelled, number_field, number_rows, parameters_of, passes, path_of, scene_select, select, technique_select } from "./renders.js";
+import { finished, labelled, number_field, number_rows, parameters_of, passes, path_of, RequestForm, scene_select, technique_select } from "./renders.js";
 import { words_of } from "./words.js";
 
 function picture(name, url, alt) {
@@ -25,9 +25,7 @@ class Bench {
     this.scene = scene_select("scene", scenes);
     this.technique = technique_select("technique", techniques, presets);
     this.size = number_field("size", limits.width, { value: limits.width.default, required: true });
-    this.supersampling = select("supersampling", limits.supersampling.enum.map((count) => [String(count), String(count)]));
-    this.light_samples = number_field("light-samples", limits.light_samples);
-    this.exposure = number_field("exposure", limits.exposure);
+    this.request_form = new RequestForm(limits);
     this.parameters = h("div", {});
     this.technique.addEventListener("change", () => this.draw_parameters());
     this.go = h("button", { type: "submit", class: "primary" }, "Render");
@@ -39,8 +37,7 @@ class Bench {
       this.render();
     } } },
     labelled("Scene", this.scene), labelled("Technique", this.technique), labelled("Width and height, pixels", this.size),
-    labelled("Samples per pixel", this.supersampling), labelled("Light samples (empty: the default)", this.light_samples),
-    labelled("Exposure, EV (empty: the scene's)", this.exposure),
+    this.request_form.elements,
     this.go, this.state, this.problem, this.parameters);
     this.draw_parameters();
     this.element = h("div", {}, h("h1", { tabindex: "-1" }, "Bench"), h("div", { class: "bench" }, this.form, this.result));
@@ -53,17 +50,13 @@ class Bench {
 
   request() {
     const size = this.size.valueAsNumber;
-    const samples = this.light_samples.valueAsNumber;
-    const exposure = this.exposure.valueAsNumber;
     return {
       scene: this.scene.value,
       technique: this.technique.value,
       parameters: this.parameter_form.values(),
       width: size,
       height: size,
-      supersampling: Number(this.supersampling.value),
-      ...(Number.isFinite(samples) ? { light_samples: samples } : {}),
-      ...(Number.isFinite(exposure) ? { exposure } : {}),
+      ...this.request_form.values(),
       measure: true,
     };
   }

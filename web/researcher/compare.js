@@ -5,7 +5,7 @@ import { h } from "/assets/shared/dom.js";
 import { ApiError, get, post } from "/assets/shared/http.js";
 import { ParameterForm } from "./form.js";
 import { Lens } from "./lens.js";
-import { finished, labelled, number_field, number_rows, parameters_of, path_of, scene_select, select, technique_select } from "./renders.js";
+import { finished, labelled, number_field, number_rows, parameters_of, path_of, RequestForm, scene_select, select, technique_select } from "./renders.js";
 import { LightForm } from "./lights.js";
 import { words_of } from "./words.js";
 
@@ -38,8 +38,7 @@ class Compare {
     this.scene = scene_select("scene", scenes);
     this.camera = select("camera", []);
     this.size = number_field("size", limits.width, { value: limits.width.default, required: true });
-    this.supersampling = select("supersampling", limits.supersampling.enum.map((count) => [String(count), String(count)]));
-    this.light_samples = number_field("light-samples", limits.light_samples, { value: limits.light_samples.default, required: true });
+    this.request_form = new RequestForm(limits);
     this.sides = sides.map((letter, index) => new Side(letter, techniques, presets, techniques[Math.min(index, techniques.length - 1)].id));
     this.lights = h("div", {});
     this.go = h("button", { type: "submit", class: "primary" }, "Draw both");
@@ -51,7 +50,7 @@ class Compare {
       this.render();
     } } },
     labelled("Scene", this.scene), labelled("Camera", this.camera), labelled("Width and height, pixels", this.size),
-    labelled("Samples per pixel", this.supersampling), labelled("Light samples", this.light_samples),
+    this.request_form.elements,
     this.sides.map(({ element }) => element), this.lights, this.go, this.state, this.problem);
     this.scene.addEventListener("change", () => this.choose_scene());
     this.element = h("div", {}, h("h1", { tabindex: "-1" }, "Compare"), h("div", { class: "bench" }, this.form, this.result));
@@ -79,8 +78,7 @@ class Compare {
       lights: this.light_form.values(),
       width: this.size.valueAsNumber,
       height: this.size.valueAsNumber,
-      supersampling: Number(this.supersampling.value),
-      light_samples: this.light_samples.valueAsNumber,
+      ...this.request_form.values(),
       measure: true,
     };
   }

@@ -2,7 +2,8 @@
 
 import { h } from "/assets/shared/dom.js";
 
-function field_of(name, schema, id) {
+/// The input of one value.
+export function field_of(name, schema, id) {
   if (schema.enum) return h("select", { id }, schema.enum.map((choice) => h("option", { value: choice }, choice)));
   if (schema.type === "boolean") return h("input", { type: "checkbox", id });
   const integer = schema.type === "integer";
@@ -12,9 +13,15 @@ function field_of(name, schema, id) {
   return h("input", { type: "text", id });
 }
 
-function set_value(field, value) {
+export function set_value(field, value) {
   if (field.type === "checkbox") field.checked = Boolean(value);
   else field.value = String(value);
+}
+
+export function value_of(field, { type }) {
+  if (field.type === "checkbox") return field.checked;
+  if (field.type === "number") return field.valueAsNumber;
+  return type === "string" ? field.value : Number(field.value);
 }
 
 const slider_steps = 200;
@@ -63,11 +70,7 @@ export class ParameterForm {
   }
 
   values() {
-    return Object.fromEntries([...this.fields].map(([name, field]) => {
-      const { type } = this.schema.properties[name];
-      const value = field.type === "checkbox" ? field.checked : type === "string" ? field.value : field.valueAsNumber;
-      return [name, value];
-    }));
+    return Object.fromEntries([...this.fields].map(([name, field]) => [name, value_of(field, this.schema.properties[name])]));
   }
 
   /// Leaves out what changes nothing unless another parameter has a certain choice.

@@ -2,6 +2,7 @@
 
 import { h } from "/assets/shared/dom.js";
 import { get } from "/assets/shared/http.js";
+import { field_of, set_value, value_of } from "./form.js";
 import { bytes, fixed, significant } from "./words.js";
 
 const wait_s = 20;
@@ -24,6 +25,30 @@ export function parameters_of(name, techniques, presets) {
   const preset = presets.find(({ id }) => id === name);
   const technique = techniques.find(({ id }) => id === (preset?.technique ?? name));
   return [technique.parameters, preset?.parameters];
+}
+
+/// Inputs for the fields of a request that the API's document gives an `x-label`. One without default
+/// may stay empty, and is left out.
+export class RequestForm {
+  constructor(properties) {
+    this.fields = Object.entries(properties)
+      .filter(([, schema]) => schema["x-label"])
+      .sort(([, a], [, b]) => a["x-order"] - b["x-order"])
+      .map(([name, schema]) => {
+        const input = field_of(name, schema, name.replaceAll("_", "-"));
+        const optional = schema.default === undefined;
+        input.required &&= !optional;
+        set_value(input, schema.default ?? "");
+        return { name, schema, input, label: `${schema["x-label"]}${optional ? ` (empty: ${schema["x-without"]})` : ""}` };
+      });
+    this.elements = this.fields.map(({ label, input }) => labelled(label, input));
+  }
+
+  values() {
+    return Object.fromEntries(this.fields
+      .filter(({ input }) => input.type === "checkbox" || input.value !== "")
+      .map(({ name, schema, input }) => [name, value_of(input, schema)]));
+  }
 }
 
 export const number_field = (id, limits, more = {}) =>
