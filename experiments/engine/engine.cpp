@@ -343,7 +343,7 @@ NamedTechnique read_technique(const std::string& text) {
 
 std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
                           const std::function<void(const Progress&)>& progress) {
-  if (runs.empty()) return {};  // nothing is told of nothing
+  if (runs.empty()) return {};               // nothing is told of nothing
   while (engine.begun() > 0) engine.next();  // of a list that was ended
   // Scenes keep the order in which they were first named.
   std::map<std::string, std::size_t> place;

@@ -25,7 +25,7 @@ struct Complaint {
 
 void say_nothing(png_structp, png_const_charp) {}
 
-void append(png_structp png, png_bytep bytes, std::size_t size) {
+void append_bytes(png_structp png, png_bytep bytes, std::size_t size) {
   static_cast<std::string*>(png_get_io_ptr(png))
       ->append(reinterpret_cast<const char*>(bytes), size);
 }
@@ -133,7 +133,7 @@ std::string encode_png(const Image8& picture) {
   if (picture.channels == 4 && is_opaque(picture)) return encode_png(without_alpha(picture));
   std::string bytes;
   Writer writer;
-  png_set_write_fn(writer.png, &bytes, append, no_flush);
+  png_set_write_fn(writer.png, &bytes, append_bytes, no_flush);
   auto rows = rows_of(picture);
   if (!write_all(writer.png, writer.info, picture, rows.data()))
     throw bad_value("picture", "cannot encode a PNG: " + writer.complaint.text);

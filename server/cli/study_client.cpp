@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int patience_s = 120;
+constexpr int reply_patience_s = 120;
 constexpr auto poll = std::chrono::milliseconds(200);
 
 /// Scheme, host and port of an address.
@@ -33,7 +33,7 @@ std::string token_in(const std::string& url, const std::string& otherwise) {
 StudyClient::StudyClient(const std::string& url, const std::string& token)
     : client(origin_of(url)) {
   client.set_keep_alive(true);
-  client.set_read_timeout(patience_s);
+  client.set_read_timeout(reply_patience_s);
   const auto used = token_in(url, token);
   if (!used.empty()) client.set_bearer_token_auth(used);
 }

@@ -30,9 +30,9 @@ std::string Checkpoint::load() const {
 }
 
 void Checkpoint::offer(const std::function<std::string()>& state) {
-  using seconds = std::chrono::duration<double>;
+  using Seconds = std::chrono::duration<double>;
   const auto now = std::chrono::steady_clock::now();
-  if (file_.empty() || seconds(now - last_).count() < folder_.every_s) return;
+  if (file_.empty() || Seconds(now - last_).count() < folder_.every_s) return;
   try {
     fs::create_directories(folder_.path);
     const std::string bytes = state();
