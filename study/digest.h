@@ -5,7 +5,10 @@
 
 namespace penumbra::study {
 
-/// SHA-256, 64 hexadecimal digits.
+/// Two lower-case digits a byte.
+std::string hexadecimal(std::string_view bytes);
+
+/// SHA-256 as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 }  // namespace penumbra::study

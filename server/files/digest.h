@@ -3,13 +3,12 @@
 #include <string>
 #include <string_view>
 
+#include "study/digest.h"
+
 namespace penumbra::server {
 
-/// Two lower-case digits a byte.
-std::string hexadecimal(std::string_view bytes);
-
-/// SHA-256 as 64 hexadecimal digits.
-std::string sha256(std::string_view bytes);
+using study::hexadecimal;
+using study::sha256;
 
 /// HMAC-SHA256 as 64 hexadecimal digits (RFC 2104).
 std::string keyed_digest(std::string_view key, std::string_view text);

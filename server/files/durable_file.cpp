@@ -21,29 +21,33 @@ struct Descriptor {
   }
 };
 
-void write_synced(const std::filesystem::path& path, std::string_view bytes) {
-  const Descriptor file{::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0640)};
-  if (file.value < 0) fail("creating " + path.string());
+void write_synced(const std::filesystem::path& path, std::string_view bytes, unsigned mode) {
+  const Descriptor file{::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, mode)};
+  if (file.value < 0) fail("cannot create " + path.string());
   while (!bytes.empty()) {
     const ssize_t count = ::write(file.value, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail("writing " + path.string());
+    if (count < 0) fail("cannot write " + path.string());
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
-  if (::fdatasync(file.value) != 0) fail("syncing " + path.string());
+  if (::fdatasync(file.value) != 0) fail("cannot sync " + path.string());
 }
 
 }  // namespace
 
 void write_durably(const std::filesystem::path& path, const std::filesystem::path& temporary,
-                   std::string_view bytes) {
+                   std::string_view bytes, const Durably& how) {
   try {
-    write_synced(temporary, bytes);
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("renaming to " + path.string());
+    write_synced(temporary, bytes, how.mode);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot rename to " + path.string());
   } catch (const std::system_error&) {
     ::unlink(temporary.c_str());
     throw;
   }
+  if (!how.sync_folder) return;
+  const auto parent = path.parent_path();
+  const Descriptor folder{::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  if (folder.value < 0 || ::fsync(folder.value) != 0) fail("cannot sync " + parent.string());
 }
 
 std::optional<std::string> read_whole(const std::filesystem::path& path) {

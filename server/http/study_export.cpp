@@ -23,107 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Rows of one person by page, in the order of the pages: of the answers that count, or of those
-/// that were replaced.
-Pages pages_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
-               const std::vector<storage::AnswerRecord>& answers) {
-  std::map<int, int> before;
-  const bool current = &answers == &person.answers;
-  if (current)
-    for (const auto& earlier : person.replaced) ++before[earlier.page];
-  Pages pages;
-  const auto plan = frozen.plan(person.participant.place);
-  const auto& arm = study::arm_of(frozen.study, plan);
-  for (const auto& stored : answers) {
-    const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
-    const int answers_before = current ? before[stored.page] : before[stored.page]++;
-    if (planned.kind == study::PageKind::practice ||
-        !study::page_of(frozen.study, planned).counted())
-      continue;
-    const auto answer = study::parse_answer(stored.body, arm, planned.slots.size());
-    pages.push_back(study::response_rows(frozen.study, frozen.hash, person.participant.pseudonym,
-                                         arm, planned, stored.page, answer, stored.answered_at));
-    auto facts = std::make_shared<study::PageFacts>();
-    facts->seen = answer.observations;
-    facts->participant_completed = !person.participant.completed_at.empty();
-    facts->answers_before = answers_before;
-    for (auto& row : pages.back()) {
-      row.included = !person.excluded();
-      row.started_at = person.participant.entered_at;
-      row.page = facts;
-    }
-  }
-  return pages;
-}
-
-json answer_json(const storage::AnswerRecord& answer) {
-  return {{"answered_at", answer.answered_at}, {"body", answer.body}};
-}
-
-/// A person as responses.json has it.
-json person_json(const FrozenStudy& frozen, const storage::ParticipantData& person) {
-  const auto& who = person.participant;
-  const auto plan = frozen.plan(who.place);
-  json pages = json::array();
-  for (const auto& stored : person.answers) {
-    const auto& planned = plan.pages.at(static_cast<std::size_t>(stored.page));
-    const auto& page = study::page_of(frozen.study, planned);
-    json pictures = json::array();
-    for (const std::size_t number : planned.slots) pictures.push_back(page.pictures.at(number).id);
-    json earlier = json::array();
-    for (const auto& replaced : person.replaced)
-      if (replaced.page == stored.page) earlier.push_back(answer_json(replaced));
-    pages.push_back({{"page_index", stored.page},
-                     {"kind", study::kind_name(planned.kind)},
-                     {"page", page.id},
-                     {"scene", page.scene},
-                     {"pictures_by_slot", pictures},
-                     {"answer", answer_json(stored)},
-                     {"earlier_answers", earlier}});
-  }
-  json decisions = json::array();
-  for (const auto& decision : person.exclusions)
-    decisions.push_back({{"excluded", decision.excluded},
-                         {"reason", decision.reason},
-                         {"at", decision.decided_at}});
-  return {{"participant", who.pseudonym},
-          {"arm", study::arm_of(frozen.study, plan).id},
-          {"entered_at", who.entered_at},
-          {"completed_at", who.completed_at.empty() ? json(nullptr) : json(who.completed_at)},
-          {"language", who.language},
-          {"consent_version", who.consent_version},
-          {"parameters", who.parameters},
-          {"details", who.details},
-          {"decisions", decisions},
-          {"pages", pages}};
-}
-
-study::ParticipantRow participant_row(const FrozenStudy& frozen,
-                                      const storage::ParticipantData& person,
-                                      const study::PersonChecks& checks, const std::string& flags) {
-  const auto& who = person.participant;
-  const auto outcome = outcome_of(frozen, who, person.answers);
-  const auto plan = frozen.plan(who.place);
-  return {who.pseudonym,
-          who.place,
-          study::arm_of(frozen.study, plan).id,
-          who.entered_at,
-          who.seen_at,
-          who.completed_at,
-          outcome.empty() ? "started" : outcome,
-          person.answers.size(),
-          plan.pages.size(),
-          who.language,
-          who.consent_version,
-          who.test,
-          person.excluded(),
-          person.excluded() ? person.exclusions.back().reason : "",
-          flags,
-          checks,
-          who.parameters,
-          who.details};
-}
-
 /// Names of flags, each once, separated by blanks.
 std::string flag_names(const json& flags) {
   std::string list;
@@ -316,33 +215,39 @@ void StudyExport::write_responses(const fs::path& file) {
   responses.finish();
 }
 
-void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
-                                const std::vector<storage::Damage>& damage) {
-  results();
-  find_flags();
-  const TemporaryFile responses_file(work, ".csv");
-  const TemporaryFile earlier_file(work, ".csv");
-  const TemporaryFile wide_file(work, ".csv");
-  const TemporaryFile pairs_file(work, ".csv");
-  const TemporaryFile participants_file(work, ".csv");
-  const TemporaryFile json_file(work, ".json");
-  PieceWriter responses(responses_file.path());
-  PieceWriter earlier(earlier_file.path());
-  PieceWriter wide(wide_file.path());
-  PieceWriter pairs(pairs_file.path());
-  PieceWriter people(participants_file.path());
-  PieceWriter documents(json_file.path());
+/// The tables of an archive, while they are written side by side.
+struct StudyExport::Tables {
+  struct Table {
+    TemporaryFile file;
+    PieceWriter writer;
 
-  // Write the tables side by side, a person at a time.
+    Table(const fs::path& work, const std::string& extension)
+        : file(work, extension), writer(file.path()) {}
+  };
+  Table responses, earlier, wide, pairs, people, documents;
+
+  explicit Tables(const fs::path& work)
+      : responses(work, ".csv"),
+        earlier(work, ".csv"),
+        wide(work, ".csv"),
+        pairs(work, ".csv"),
+        people(work, ".csv"),
+        documents(work, ".json") {}
+};
+
+/// Goes through everybody once.
+void StudyExport::write_tables(Tables& tables) {
   study::PairsTable pairs_table;
   const study::WideTable wide_table(frozen->study);
   const study::ParticipantsTable people_table(frozen->study);
   const auto entries = participants.entries_by_person(frozen->study.id);
+  auto &responses = tables.responses.writer, &earlier = tables.earlier.writer;
+  auto& documents = tables.documents.writer;
   responses.add(study::response_header());
   earlier.add(study::response_header());
-  wide.add(wide_table.header());
-  pairs.add(study::PairsTable::header());
-  people.add(people_table.header());
+  tables.wide.writer.add(wide_table.header());
+  tables.pairs.writer.add(study::PairsTable::header());
+  tables.people.writer.add(people_table.header());
   documents.add("{\"study\": " + json(frozen->study.id).dump() +
                 ", \"study_hash\": " + json(frozen->hash).dump() + ", \"participants\": [");
   bool first = true;
@@ -351,36 +256,44 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
     people_table.append(
         participant_row(*frozen, person.data, checks_of(*frozen, person.data, entries),
                         names_of_flags(who.pseudonym)),
-        people.text());
+        tables.people.writer.text());
     if (who.test) return;
     documents.add((first ? "\n" : ",\n") + person.document);
     first = false;
     for (const auto& page : person.pages) {
       for (const auto& row : page) study::append_response(row, responses.text());
-      pairs_table.append(page, pairs.text());
+      pairs_table.append(page, tables.pairs.writer.text());
     }
-    wide_table.append(person.pages, wide.text());
+    wide_table.append(person.pages, tables.wide.writer.text());
     for (const auto& page : pages_of(*frozen, person.data, person.data.replaced))
       for (const auto& row : page) study::append_response(row, earlier.text());
   });
   documents.add("\n]}\n");
-  for (PieceWriter* writer : {&responses, &earlier, &wide, &pairs, &people, &documents})
-    writer->finish();
+  for (auto* table : {&tables.responses, &tables.earlier, &tables.wide, &tables.pairs,
+                      &tables.people, &tables.documents})
+    table->writer.finish();
+}
 
-  // Put everything into the archive.
+void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
+                                const std::vector<storage::Damage>& damage) {
+  results();
+  find_flags();
+  Tables tables(work);
+  write_tables(tables);
+
   const auto context = report_context();
   ZipWriter zip(archive);
   zip.add_text("report.html", study::html_report(report, context));
   zip.add_text("results.json", scenes::json_text(report, 2) + "\n");
   zip.add_text("results.tex", study::latex_tables(report, options.labels));
   zip.add_text("tables.txt", study::statistics_table(report, options));
-  zip.add_file("responses.csv", responses_file.path());
-  zip.add_file("earlier_responses.csv", earlier_file.path());
-  zip.add_file("responses_wide.csv", wide_file.path());
-  zip.add_file("pairs.csv", pairs_file.path());
-  zip.add_file("participants.csv", participants_file.path());
+  zip.add_file("responses.csv", tables.responses.file.path());
+  zip.add_file("earlier_responses.csv", tables.earlier.file.path());
+  zip.add_file("responses_wide.csv", tables.wide.file.path());
+  zip.add_file("pairs.csv", tables.pairs.file.path());
+  zip.add_file("participants.csv", tables.people.file.path());
   zip.add_text("codebook.csv", study::write_codebook(frozen->study));
-  zip.add_file("responses.json", json_file.path());
+  zip.add_file("responses.json", tables.documents.file.path());
   if (!damage.empty()) zip.add_text("damaged.csv", damaged_csv(damage));
   zip.add_text("study.json", scenes::json_text(frozen->study.document, 2) + "\n");
   for (const auto& file : study::report_files()) {
@@ -390,14 +303,6 @@ void StudyExport::write_archive(const fs::path& archive, const fs::path& work,
   for (const auto& figure : study::figures_of(report, context.figures))
     zip.add_text("figures/" + figure.name + ".svg", figure.svg);
   zip.finish();
-}
-
-study::PersonChecks checks_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
-                              const std::map<std::string, int>& entries) {
-  auto checks = checks_of(frozen, person.participant, person.answers);
-  const auto found = entries.find(person.participant.person_id);
-  if (found != entries.end()) checks.entries = found->second;
-  return checks;
 }
 
 }  // namespace penumbra::server::http

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/http/frozen_study.h"
+#include "server/http/person_rows.h"
 #include "server/storage/participants.h"
 #include "study/checks.h"
 #include "study/measures.h"
@@ -34,9 +35,6 @@ class TemporaryFile {
  private:
   std::filesystem::path file;
 };
-
-/// Rows of one person by page.
-using Pages = std::vector<std::vector<study::ResponseRow>>;
 
 /// One published version of a study with its answers.
 class StudyExport {
@@ -67,7 +65,10 @@ class StudyExport {
     std::string document;  ///< of responses.json, where it is wanted
   };
 
+  struct Tables;
+
   void gather();
+  void write_tables(Tables& tables);
   void find_flags();
   /// Calls `take` for everybody, with documents where `documents`.
   void each(bool documents, const std::function<void(const Person&)>& take);
@@ -94,9 +95,5 @@ class StudyExport {
   std::map<std::string, InversionEvidence> evidence;  ///< by pseudonym
   study::Attendance attendance;
 };
-
-/// Checks of a person, with how often the same name entered the study.
-study::PersonChecks checks_of(const FrozenStudy& frozen, const storage::ParticipantData& person,
-                              const std::map<std::string, int>& entries);
 
 }  // namespace penumbra::server::http

@@ -10,8 +10,10 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "renderer/error.h"
+#include "server/files/durable_file.h"
 #include "server/storage/folder_files.h"
 
 namespace penumbra::server::storage {
@@ -22,14 +24,6 @@ Error storage_error(const std::string& doing, const std::filesystem::path& file)
 }
 
 constexpr const char* unfinished = ".part";  // in the names of files being written
-
-/// Closes a descriptor at the end of its block.
-struct Descriptor {
-  int value;
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-};
 
 }  // namespace
 
@@ -83,29 +77,11 @@ void write_file_durably(const std::filesystem::path& file, const std::string& by
   static std::atomic<unsigned> counter{0};
   const auto temporary = file.string() + unfinished + std::to_string(::getpid()) + "-" +
                          std::to_string(counter.fetch_add(1));
-  {
-    Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode)};
-    if (out.value < 0) throw storage_error("cannot create", temporary);
-    for (std::size_t done = 0; done < bytes.size();) {
-      const auto written = ::write(out.value, bytes.data() + done, bytes.size() - done);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) {
-        const Error error = storage_error("cannot write", temporary);
-        ::unlink(temporary.c_str());
-        throw error;
-      }
-      done += static_cast<std::size_t>(written);
-    }
-    if (::fsync(out.value) != 0) {
-      const Error error = storage_error("cannot sync", temporary);
-      ::unlink(temporary.c_str());
-      throw error;
-    }
+  try {
+    write_durably(file, temporary, bytes, {.mode = mode, .sync_folder = true});
+  } catch (const std::system_error& error) {
+    throw Error("storage", error.what());
   }
-  if (::rename(temporary.c_str(), file.c_str()) != 0) throw storage_error("cannot rename to", file);
-  Descriptor folder{::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-  if (folder.value < 0 || ::fsync(folder.value) != 0)
-    throw storage_error("cannot sync", file.parent_path());
 }
 
 std::string read_file(const std::filesystem::path& file) {

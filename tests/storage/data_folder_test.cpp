@@ -1,5 +1,6 @@
 #include "server/storage/data_folder.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -55,6 +56,27 @@ TEST(WritingAFile, LeavesNothingButTheFile) {
   EXPECT_EQ(read_file(folder.path / "file"), bytes + bytes);
   const std::filesystem::directory_iterator listing(folder.path);
   EXPECT_EQ(std::distance(begin(listing), end(listing)), 1);
+}
+
+TEST(WritingAFile, SaysWhatStoodInItsWayAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const auto reason = [](const std::filesystem::path& file) {
+    try {
+      write_file_durably(file, "bytes");
+    } catch (const Error& error) {
+      return error.code + ": " + error.what();
+    }
+    return std::string("written");
+  };
+  const auto missing = folder.path / "missing" / "file";
+  EXPECT_THAT(reason(missing), testing::AllOf(testing::StartsWith("storage: cannot create"),
+                                              testing::EndsWith("No such file or directory")));
+  // A folder of that name can be replaced by no file.
+  const auto place = folder.path / "place";
+  std::filesystem::create_directories(place / "full");
+  EXPECT_THAT(reason(place), testing::StartsWith("storage: cannot rename to " + place.string()));
+  const std::filesystem::directory_iterator listing(folder.path);
+  EXPECT_EQ(std::distance(begin(listing), end(listing)), 1) << "what was half written is left";
 }
 
 }  // namespace
