@@ -8,7 +8,7 @@
 namespace penumbra::bench {
 
 /// The main function of a measurement: `add_options` declares what it takes, `measure` prints its
-/// table. Answers the exit status; errors go to standard error.
+/// table. Returns the exit status; errors go to standard error.
 inline int run_program(int count, char** values, const std::string& meaning,
                        const std::function<void(CLI::App&)>& add_options,
                        const std::function<void()>& measure) {

@@ -25,7 +25,7 @@ struct DeviceLimits {
 std::vector<DeviceInfo> list_devices();
 
 struct RendererOptions {
-  std::string device;  ///< part of a name, or an index; empty: a GPU if there is one, else lavapipe
+  std::string device;  ///< part of a name, or an index; empty: a GPU, lavapipe where there is none
   bool validation = false;  ///< turn the validation layer on; its messages fail the render
   /// Pictures with more samples are drawn window by window, so that memory for their size is there.
   std::uint64_t most_window_samples = std::uint64_t{1} << 24;

@@ -213,7 +213,7 @@ ParameterValue checked_value(const Parameter& parameter, const ParameterValue& g
 
 ParameterValues complete_parameters(const std::vector<Parameter>& declared,
                                     const ParameterValues& given) {
-  // Refuse names that nobody declared, before any value: a misspelt name is the likelier mistake.
+  // Refuse undeclared names before any value: a misspelt name is the likelier mistake.
   for (const auto& [name, value] : given) {
     const auto has_name = [&wanted = name](const Parameter& p) { return p.name == wanted; };
     if (std::any_of(declared.begin(), declared.end(), has_name)) continue;

@@ -35,7 +35,7 @@ struct TechniqueInput {
 TechniqueInput technique_input(const RenderRequest& request, const Light& light,
                                const Camera& camera, const ParameterValues& parameters);
 
-/// Which instances may change what a technique answers for the surfaces that are seen.
+/// Which instances may change what a technique returns for the surfaces that are seen.
 enum class CasterUse {
   none,  ///< none at all
   beam,  ///< those between light and surface: the answer is exact for every point

@@ -23,7 +23,7 @@ std::string base64_decode(std::string_view text, const std::string& path) {
                                          reinterpret_cast<const unsigned char*>(text.data()),
                                          static_cast<int>(text.size()));
   if (size < 0) throw unreadable(path + " is no base64", path);
-  // The library counts what stands for padding as zeros.
+  // The library counts padding as zeros.
   std::size_t padding = 0;
   while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;
   bytes.resize(static_cast<std::size_t>(size) - padding);

@@ -13,7 +13,7 @@
 namespace penumbra::scenes {
 
 /// Reads one JSON object key by key. Errors are `unreadable` with the path of the value as field;
-/// `finish` refuses keys that nobody asked for and names those that there are.
+/// `finish` refuses keys that were not asked for and names those that there are.
 class JsonReader {
  public:
   JsonReader(const nlohmann::json& value_, std::string path_);

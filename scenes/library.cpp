@@ -81,7 +81,7 @@ void drop_empty_meshes(Scene& scene) {
     if (instance.mesh < number_of.size()) instance.mesh = number_of[instance.mesh];
 }
 
-/// The one door by which scenes come in from files, whoever brings them.
+/// The one function that reads scenes from files.
 Scene load_file(const fs::path& file) {
   const std::string extension = lower_extension(file);
   try {

@@ -22,7 +22,7 @@ void write_file(const std::filesystem::path& file, const std::string& bytes) {
   if (!stream) throw bad_value("out", "cannot write " + file.string());
 }
 
-/// Extension that stands for what the first bytes say; empty for anything else.
+/// Extension of the format that the first bytes show; empty for anything else.
 std::string known_format(std::string_view bytes) {
   if (bytes.substr(0, 8) == std::string_view("\x89PNG\r\n\x1a\n", 8)) return ".png";
   if (bytes.substr(0, 3) == std::string_view("\xff\xd8\xff", 3)) return ".jpg";

@@ -16,8 +16,8 @@ namespace penumbra::scenes {
 /// left, runs alone. Four channels without a transparent pixel are written as three.
 std::string encode_png(const Image8& picture);
 
-/// EXR of 32-bit float channels. Names are R, G, B, A (or Y) where none are given; else one per
-/// channel, each different. Channels come back in the picture's order.
+/// EXR of 32-bit float channels. Names are R, G, B, A (or Y) where none are given; otherwise one
+/// per channel, each different. Channels come back in the picture's order.
 std::string encode_exr(const ImageF& picture, const std::vector<std::string>& channels = {});
 
 /// By the file's extension: .png, .jpg (quality 95, alpha dropped) or .tif.

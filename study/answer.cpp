@@ -92,7 +92,7 @@ std::vector<int> read_order_shown(const json& value, std::size_t slots) {
   return order;
 }
 
-/// Reads one optional key; false for a key that nobody knows.
+/// Reads one optional key; false for an unknown key.
 bool read_observation(const std::string& key, const json& value, std::size_t slots,
                       Observations& seen) {
   if (key == "active_ms")

@@ -33,8 +33,8 @@ struct EnrolmentPlan {
 /// Where the holder of a place stands: still answering, done, or gone.
 enum class PlaceState { open, completed, dropped };
 
-/// The place of the next person: the first that was dropped, else a new one. `places[p]` is the
-/// state of place p.
+/// The place of the next person: the first that was dropped, otherwise a new one. `places[p]` is
+/// the state of place p.
 std::size_t next_place(std::span<const PlaceState> places);
 
 /// Random permutations of one seed, kept: neighbouring places share them, and drawing one (seeding

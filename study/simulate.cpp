@@ -136,7 +136,7 @@ json simulate_answer(const Study& study, const SimulatedPerson& person, const En
   const Page& page = page_of(study, planned);
   Random ranks(person.seed, stream_ranks, page_index);
   auto shelves = draw_shelves(worths_of(page, planned, person, preferences), preferences, ranks);
-  // Who reads what a page asks for answers an attention item as asked.
+  // People who read what a page asks for do as an attention item says.
   if (!page.counted() && person.kind != PersonKind::random)
     std::fill(shelves.begin(), shelves.end(), 0);
   const int last = *std::max_element(shelves.begin(), shelves.end());

@@ -46,7 +46,7 @@ struct Picture {
   std::string parameters_hash;  ///< of the parameters' canonical text
 };
 
-/// What an attentive person answers on a page: one picture before another (a gold item), or all on
+/// What an attentive person says on a page: one picture before another (a gold item), or all on
 /// one place, because the page's question asks for that (an attention item, which ranks nothing and
 /// is counted nowhere).
 struct Expectation {
@@ -188,7 +188,7 @@ struct Study {
   BrightnessCheck brightness;
   ExpectationRule expectations;
   Completion completion;
-  std::uint32_t quota = 0;  ///< completed participants after which nobody enters; 0: no limit
+  std::uint32_t quota = 0;  ///< completed participants after which no one enters; 0: no limit
   nlohmann::json document;  ///< what was parsed
 };
 

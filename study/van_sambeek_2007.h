@@ -8,7 +8,7 @@
 /// Published results of van Sambeek 2007, by the preset whose settings are his.
 namespace penumbra::published {
 
-/// His scenes in his order, by the built-in scene that stands for each.
+/// His scenes in his order, by the built-in scene that rebuilds each.
 inline const std::vector<std::string> scenes{
     "car", "boxes", "disco-box", "island", "warehouse-inside", "warehouse-outside"};
 

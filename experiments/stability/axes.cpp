@@ -10,7 +10,7 @@ namespace penumbra::experiments::stability {
 namespace {
 
 /// Values between a parameter's own and an end of its range: by equal factors where its scale is
-/// logarithmic and it spans some, else by growing shares of the way.
+/// logarithmic and it spans some, otherwise by growing shares of the way.
 std::vector<double> values_towards(const Parameter& parameter, double from, double to) {
   std::vector<double> values{from};
   constexpr int steps = 6;

@@ -27,7 +27,7 @@ class Child {
   bool read(const std::function<void(const nlohmann::json&)>& hear);
   /// SIGKILL.
   void kill();
-  /// Empty where it ended by itself and well, else how it died. After `read` returned false.
+  /// Empty where it ended by itself and well, otherwise how it died. After `read` returned false.
   const std::string& death() const { return death_; }
 
  private:

@@ -8,7 +8,7 @@ namespace penumbra::experiments::stability {
 
 /// Why something breaks, by technique and axis, and whether mathematics or the method requires it.
 struct Reason {
-  std::string technique;  ///< an id; one that ends in * stands for all that begin so
+  std::string technique;  ///< an id; one that ends in * means all that begin so
   std::string axis;
   bool required = false;
   std::string why;

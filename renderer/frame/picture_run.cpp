@@ -62,7 +62,7 @@ PictureRun::PictureRun(Renderer::State& state, const RenderRequest& request,
       std::any_of(frame_.lights().begin(), frame_.lights().end(), [&](const auto& light) {
         return light && light->needs().light_points == request.light_samples;
       });
-  // Nothing changes from round to round where nobody goes through the picture's points.
+  // Nothing changes from round to round where no pass goes through the picture's points.
   if (!goes_through_points_) rounds_ = {{0, request.light_samples}};
 }
 

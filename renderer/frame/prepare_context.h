@@ -47,7 +47,7 @@ class PrepareContext {
   std::uint32_t batches;  ///< of this light in this frame
   std::uint32_t frame_index;
   std::vector<std::string>& notes;  ///< shown with the result; adding one twice is harmless
-  const SceneAdjacency* adjacency;  ///< where Requirements::adjacency asks for it, else null
+  const SceneAdjacency* adjacency;  ///< where Requirements::adjacency asks for it, otherwise null
 
   /// Records a timed pass. Passes of one name add up in the report.
   void pass(const std::string& name, const std::function<void(vulkan::Commands&)>& record) {

@@ -6,7 +6,7 @@
 
 namespace penumbra {
 
-/// Points of a pixel that are drawn in one go where nobody bounds the error.
+/// Most light points per pixel drawn in one round when no error bound is set.
 inline constexpr std::uint32_t most_round_points = 4096;
 
 /// Parts of a pixel's `light_samples` points that are drawn one after the other. `bounded`: from

@@ -3,7 +3,7 @@
 #include "renderer/image.h"
 
 /// Picture comparison: pure functions. Pictures are sRGB-encoded with 3 or 4 channels, alpha is
-/// ignored; both must have the same size, else bad_value.
+/// ignored; both must have the same size, otherwise bad_value.
 namespace penumbra::metrics {
 
 /// Root of the mean squared difference of Y = 0.299 R + 0.587 G + 0.114 B, encoded, in 0..255.

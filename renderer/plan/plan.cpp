@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Beyond so many pairs of caster and lit surface the surfaces' common box stands for them.
+/// Above this many caster-surface pairs, test against one common box.
 constexpr std::size_t most_pairs = 4'000'000;
 
 /// What the camera sees: half-spaces, and the corners where they begin.

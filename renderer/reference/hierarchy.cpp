@@ -71,7 +71,7 @@ class Builder {
     nodes_[index].next = static_cast<std::uint32_t>(nodes_.size());
   }
 
-  /// Orders [begin, end) by the cheapest plane between bins and answers where the second part
+  /// Orders [begin, end) by the cheapest plane between bins and returns where the second part
   /// begins.
   std::size_t split(std::size_t begin, std::size_t end, const Box& centers) {
     int best_axis = -1;

@@ -19,7 +19,7 @@ struct Node {
   glm::vec3 low;
   std::uint32_t next;
   glm::vec3 high;
-  std::int32_t triangle;  ///< of a leaf, else -1
+  std::int32_t triangle;  ///< of a leaf, otherwise -1
 };
 static_assert(sizeof(Node) == 32, "two texels of four words");
 

@@ -124,7 +124,7 @@ struct PlanarReceiver {
   std::vector<glm::dvec3> corners;
 };
 
-/// A rectangle that stands for casters where receivers are projected onto planes (Coleman 2006): it
+/// A rectangle that replaces casters where receivers are projected onto planes (Coleman 2006): it
 /// cuts them in half, and dark texels on it stop light.
 struct ShadowPlane {
   std::string name;

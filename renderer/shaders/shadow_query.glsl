@@ -1,4 +1,4 @@
-// The question a technique answers: how much of the light reaches this point?
+// What a technique computes: how much of the light reaches this point?
 #ifndef PENUMBRA_SHADOW_QUERY_GLSL
 #define PENUMBRA_SHADOW_QUERY_GLSL
 #include "renderer/shaders/light_points.glsl"

@@ -2,7 +2,7 @@
 // defines ENCODE and vec4 encode_depth(float) before it reads and encodes rows of the depth map.
 //
 // Without a further definition the filter takes means. FILTER_LOGARITHMS: the first component holds
-// logarithms, and the result is the logarithm of the mean of what they stand for. FILTER_MAXIMUM: the
+// logarithms, and the result is the logarithm of the mean of what they encode. FILTER_MAXIMUM: the
 // result is the greatest value.
 #ifdef ENCODE
 uniform sampler2DArray shadow_map;

@@ -40,7 +40,7 @@ vec4 read_blurred(ShadowQuery query, MapPoint point) {
   return sum;
 }
 
-/// Logarithm of the mean of what a map of logarithms stands for, interpolated between four texels; no
+/// Logarithm of the mean of what a map of logarithms encodes, interpolated between four texels; no
 /// sampler does that.
 float read_logarithms(MapPoint point) {
   vec2 corner = point.texel - 0.5;

@@ -22,7 +22,7 @@ Diagnostic mip_level_diagnostic();
 
 enum class MapFilter {
   mean,
-  logarithmic,  ///< of logarithms: that of the mean of what they stand for. No mips.
+  logarithmic,  ///< of logarithms: that of the mean of what they encode. No mips.
   maximum,      ///< of all texels that the blur reads. No mips.
 };
 

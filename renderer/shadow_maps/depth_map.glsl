@@ -172,7 +172,7 @@ float fetch_depth(MapPoint point, ivec2 texel) {
   return texelFetch(shadow_map, ivec3(texel, point.view), 0).r;
 }
 
-/// 1 where the texel leaves the receiver lit, else 0.
+/// 1 where the texel leaves the receiver lit, otherwise 0.
 float compare_texel(MapPoint point, ivec2 texel) {
   return receiver_depth(point, texel) <= fetch_depth(point, texel) ? 1.0 : 0.0;
 }

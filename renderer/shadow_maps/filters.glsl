@@ -1,4 +1,4 @@
-// Percentage-closer filters: every texel is compared first, and the answers are averaged.
+// Percentage-closer filters: every texel is compared first, and the results are averaged.
 #ifndef PENUMBRA_MAP_FILTERS_GLSL
 #define PENUMBRA_MAP_FILTERS_GLSL
 #include "renderer/shadow_maps/depth_map.glsl"

@@ -7,7 +7,7 @@
 // from the light (from the origin for a directional one). All zero: volumes end at infinity.
 layout(push_constant) uniform VolumeBlock {
   vec4 end_plane;
-  float reach;          // m: length of a shadow that stands for infinity where the view is parallel
+  float reach;          // m: length of a shadow taken as infinite where the view is parallel
   uint every_triangle;  // 0: the triangles are closed meshes, and those turned from the light cast
   float far_depth;      // where far_clip.frag cuts volumes off
 } volume;

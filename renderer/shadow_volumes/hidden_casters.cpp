@@ -25,7 +25,7 @@ struct Way {
   glm::dvec3 from(const glm::dvec3& point) const { return glm::dvec3(light) - light.w * point; }
 };
 
-using Polygon = std::vector<glm::dvec3>;  ///< in a plane of two parameters, z nought
+using Polygon = std::vector<glm::dvec3>;  ///< in a plane of two parameters, z zero
 
 /// Keeps the parameters (s, t) at which low <= a + s b + t c <= high on every axis.
 bool meets(Polygon domain, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,

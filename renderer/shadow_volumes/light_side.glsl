@@ -16,7 +16,7 @@ bool is_before(vec3 a, vec3 b) {
 // on the other, 0 where it lies in the plane: such a triangle is seen edge-on and throws no volume,
 // whose end would be as wide as the world and have no area. Decided by the light's
 // point against the triangle's own plane, not by a direction to one of its points, and with the
-// corners sorted first: whoever asks, and in whatever order, gets the same bits, and a triangle is
+// corners sorted first: from any pass, in any order, gets the same bits, and a triangle is
 // turned to the light exactly where its mirror image is not. So both sides of an edge always agree
 // on whether it is a silhouette, and volumes have no gaps.
 //

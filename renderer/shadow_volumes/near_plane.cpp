@@ -39,7 +39,7 @@ std::optional<glm::mat4> NearPlane::near_from_caster() const {
   const double light_height = glm::dot(plane_, light_);
   if (light_height == 0.0) return std::nullopt;
   // A point y goes to y h(light) - light h(y), with h the height over the plane: it is on the line
-  // from the light through y, and its own height is nought.
+  // from the light through y, and its own height is zero.
   const glm::dvec4 light = clip_from_world_ * light_;
   const double side = light_height > 0.0 ? 1.0 : -1.0;
   glm::dmat4 near_from_caster = light_height * clip_from_world_ - glm::outerProduct(light, plane_);

@@ -9,7 +9,7 @@ uint count_volumes(vec2 pixel) { return texelFetch(volume_count, ivec2(pixel), 0
 // 0 .. 127, what is more 127, where the highest bit marks samples in which volumes were counted.
 uint count_masked_volumes(vec2 pixel) { return count_volumes(pixel) & 0x7fu; }
 
-// Nought is grey; one and more run from yellow over red; what wrapped below nought is blue.
+// Zero is grey; one and more run from yellow over red; what wrapped below zero is blue.
 vec4 picture_of_count(uint count) {
   if (count == 0u) return vec4(0.35, 0.35, 0.35, 1.0);
   if (count >= 128u) return vec4(0.2, 0.3, 0.5 + float(count - 128u) / 256.0, 1.0);

@@ -71,7 +71,7 @@ struct VolumeOptions {
   double light_radius = 0.0;
 };
 
-/// Options that parameters of volume_parameters stand for.
+/// Options that parameters of volume_parameters set.
 VolumeOptions volume_options(const ParameterValues& parameters);
 
 /// What throws the volumes that such options ask for.

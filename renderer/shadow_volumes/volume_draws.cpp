@@ -43,7 +43,7 @@ void VolumeDraws::record_open_caps(vulkan::Commands& commands, bool constants) c
   for (const Draw& draw : draws) {
     if (draw.constants.every_triangle == 0u) continue;
     if (constants) commands.constants(draw.constants);
-    // Six indices with adjacency stand for the three corners of a triangle.
+    // Six indices with adjacency hold the three corners of a triangle.
     vkCmdDraw(commands.handle(), draw.index_count / 2, 1, draw.first_index / 2, 0);
   }
 }

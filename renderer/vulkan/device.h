@@ -75,8 +75,8 @@ struct ValidationLog {
 class Device {
  public:
   /// Chooses by options.device: an index, a part of a name (any case), or empty for a GPU where
-  /// there is one and else the first device. Throws bad_value (field "device") listing the devices,
-  /// or a device error that names the missing feature.
+  /// there is one, otherwise the first device. Throws bad_value (field "device") listing the
+  /// devices, or a device error that names the missing feature.
   explicit Device(const RendererOptions& options);
   ~Device();
   Device(const Device&) = delete;

@@ -98,7 +98,7 @@ class PipelineCache {
   const ShaderLibrary& library() const { return library_; }
 
   /// Fills every descriptor of `pipeline` from `bindings` and pushes them. Throws std::logic_error
-  /// naming a resource that the shader reads and nobody bound.
+  /// naming a resource that the shader reads and that is not bound.
   void push(VkCommandBuffer commands, const Pipeline& pipeline, const Bindings& bindings);
 
  private:

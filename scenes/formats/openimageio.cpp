@@ -19,7 +19,7 @@ using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-/// Writes into memory, in the format that `name`'s extension stands for.
+/// Writes into memory, in the format of `name`'s extension.
 std::string encoded(const std::string& name, ImageSpec& spec, TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);

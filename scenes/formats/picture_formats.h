@@ -16,13 +16,13 @@ class PictureFormats {
  public:
   virtual ~PictureFormats() = default;
 
-  /// In the format that the extension, .jpg or .tif, stands for. JPEG has quality 95.
+  /// In the format of the extension, .jpg or .tif. JPEG has quality 95.
   virtual std::string encode(const std::string& extension, const Image8& picture) const = 0;
   /// EXR, a name per channel.
   virtual std::string encode_exr(const ImageF& picture,
                                  const std::vector<std::string>& channels) const = 0;
 
-  /// As picture_io.h has it, of the format that the extension stands for.
+  /// As picture_io.h has it, of the extension's format.
   virtual Image8 decode(const std::string& extension, std::string_view bytes,
                         std::uint64_t most_bytes) const = 0;
   /// Turned as its EXIF says; .png, .jpg or .webp.

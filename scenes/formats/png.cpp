@@ -93,7 +93,7 @@ bool read_head(png_structp png, png_infop info) {
 /// Asks for 8 bits and full colours.
 bool prepare_reading(png_structp png, png_infop info) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_expand(png);  // palettes, fewer bits and the colour that stands for transparency
+  png_set_expand(png);  // palettes, fewer bits and the colour that means transparency
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
   return true;

@@ -43,8 +43,8 @@ struct TextureUse {
   bool operator==(const TextureUse&) const = default;
 };
 
-/// Fills textures, in their order if all are wanted, else as materials show them, and materials
-/// (the last one is glTF's default); one TextureUse per material.
+/// Fills textures, in their order if all are wanted, otherwise as materials show them, and
+/// materials (the last one is glTF's default); one TextureUse per material.
 std::vector<TextureUse> read_materials(const tinygltf::Model& model, bool all_textures,
                                        Scene& scene, Notes& notes);
 

@@ -62,7 +62,7 @@ T load(const unsigned char* at) {
   return value;
 }
 
-/// One component as a number; integers that stand for fractions by glTF 2.0, 3.6.2.2.
+/// One component as a number; integers that mean fractions by glTF 2.0, 3.6.2.2.
 float component(const unsigned char* at, int type, bool normalized) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE: {

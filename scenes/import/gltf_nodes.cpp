@@ -157,7 +157,7 @@ void add_node(const tinygltf::Model& model, const tinygltf::Node& node, std::siz
   add_light(model.lights[at], matrix, element("lights", at), scene);
 }
 
-/// Nodes that nobody has for a child; checks on the way that no child is missing or has two
+/// Nodes that are no node's child; checks on the way that no child is missing or has two
 /// parents.
 std::vector<int> root_nodes(const tinygltf::Model& model) {
   std::vector<int> parents(model.nodes.size(), 0), roots;

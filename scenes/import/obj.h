@@ -24,7 +24,7 @@ void for_each_statement(
 /// The words of a statement from the one at `first` on, as they stand in the file.
 std::string rest_of(const std::vector<std::string_view>& words, std::size_t first);
 
-/// A finite number; a comma may stand for the point. Throws unreadable naming the line.
+/// A finite number; a comma may replace the point. Throws unreadable naming the line.
 double number_of(std::string_view word, std::size_t line);
 
 /// Which position, uv and normal a corner of a face has; -1 where it has none.

@@ -53,7 +53,7 @@ struct Plan {
 };
 
 /// Drawn in the order in which they are worth looking at: first every scene as it really is, then
-/// technique by technique, so that whoever breaks off has whole rows of the table.
+/// technique by technique, so that breaking off leaves whole rows of the table.
 Plan plan_of(const study::Study& study) {
   Plan plan;
   std::vector<std::pair<bool, std::size_t>> place;  ///< no truth; place on its page

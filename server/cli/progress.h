@@ -5,7 +5,8 @@
 
 namespace penumbra::server::cli {
 
-/// Tells on standard error how far something is: a bar on a terminal, else a line now and then.
+/// Tells on standard error how far something is: a bar on a terminal, otherwise a line now and
+/// then.
 class Progress {
  public:
   explicit Progress(std::string title);

@@ -13,7 +13,7 @@ struct Session {
   bool json = false;            ///< one document on standard output and nothing else
   std::function<int()> action;  ///< set by the command that was named
 
-  /// Prints a document where --json was given, else what people read.
+  /// Prints a document where --json was given, otherwise what people read.
   void print(const nlohmann::json& document, const std::string& text) const;
 };
 

@@ -115,7 +115,7 @@ void get_participant(Call& call) {
   send_json(call.response, 200, enrolment_body(call.service, *frozen, person));
 }
 
-/// A draft is found by researchers who ask for its version: nobody else learns of a study before it
+/// A draft is found by researchers who ask for its version: no others learn of a study before it
 /// opens.
 std::optional<storage::StudyRecord> welcoming_version(Call& call) {
   const auto& id = call.path.at("study");

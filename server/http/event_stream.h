@@ -8,7 +8,7 @@
 
 namespace penumbra::server::http {
 
-/// Writes server-sent events (HTML standard, 9.2); every call answers whether the client still
+/// Writes server-sent events (HTML standard, 9.2); every call returns whether the client still
 /// reads.
 class EventSink {
  public:

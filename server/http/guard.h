@@ -53,7 +53,7 @@ class Allowance {
   std::atomic<int> left;
 };
 
-/// Who calls: the address that the reverse proxy on this machine reports, else the peer's.
+/// Who calls: the address that the reverse proxy on this machine reports, otherwise the peer's.
 std::string client_of(const httplib::Request& request);
 
 /// True where a reverse proxy speaks for the client.

@@ -12,8 +12,8 @@ namespace penumbra::server::http {
 /// Body of GET /api/v1/renders/{id}.
 nlohmann::json body_of(const RenderRecord& record);
 
-/// Who calls, as the render service knows submitters: a lease for this one call, which nobody else
-/// knows.
+/// Who calls, as the render service knows submitters: a lease for this one call, which no other
+/// call knows.
 Submitter submitter_of(const Call& call);
 
 /// Hands a request to the render service, within the limit per client.

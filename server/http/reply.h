@@ -41,7 +41,7 @@ std::string refusal_text(const Error& error, const std::vector<std::string>& met
 /// What is answered for an exception that reached the edge of a request; unknown ones are logged.
 Error error_of(std::exception_ptr failure);
 
-/// The same for everything that does not exist, so that nobody learns what nearly does.
+/// The same for everything that does not exist, so that it does not show what nearly does.
 Error nothing_here();
 
 }  // namespace penumbra::server::http

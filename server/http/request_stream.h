@@ -40,7 +40,7 @@ class RequestStream : public httplib::Stream {
   RequestStream(const RequestStream&) = delete;
   RequestStream& operator=(const RequestStream&) = delete;
 
-  /// The one that this thread answers: the library hands handlers no stream.
+  /// The one that this thread handles: the library hands handlers no stream.
   static RequestStream& current();
 
   /// False as long as the client may still read an answer.

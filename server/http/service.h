@@ -46,7 +46,7 @@ struct Service {
   Experiments experiments;
   Health health;
 
-  /// Empty when requests can be served, else why not.
+  /// Empty when requests can be served, otherwise why not.
   std::string not_ready();
 
   /// Numbers for /metrics.

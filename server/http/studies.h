@@ -7,7 +7,8 @@
 
 namespace penumbra::server::http {
 
-/// The version whose answers a call is about: `version` of the query, else the newest published.
+/// The version whose answers a call is about: `version` of the query, otherwise the newest
+/// published.
 std::shared_ptr<const FrozenStudy> published_at(Call& call);
 
 }  // namespace penumbra::server::http

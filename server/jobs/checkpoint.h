@@ -38,7 +38,7 @@ inline std::filesystem::path checkpoint_folder(const std::filesystem::path& data
   return data / "checkpoints";
 }
 
-/// Removes what nobody came back to within a week.
+/// Removes what was not taken up again within a week.
 void sweep_checkpoints(const std::filesystem::path& folder);
 
 }  // namespace penumbra::server

@@ -77,8 +77,8 @@ class RenderService {
   virtual std::optional<RenderRecord> wait_change(const std::string& id, const RenderRecord& seen,
                                                   double seconds) = 0;
 
-  /// Drops the submissions that hold one of `keys`; what nobody wants any more is cancelled. False
-  /// where there is no such submission: the render is over, or it is others'.
+  /// Drops the submissions that hold one of `keys`; what no submission wants any more is cancelled.
+  /// False where there is no such submission: the render is over, or it is others'.
   virtual bool release(const std::string& id, const std::set<std::string>& keys) = 0;
 
   /// Verified bytes of an artefact that is stored: "image.png", "image.exr", "visibility.exr",

@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr double draw_patience_s = 30.0;
 constexpr double measure_patience_s = 20.0;
 
-/// Timing that nobody gave a number of frames for takes about this long at most, milliseconds.
+/// Time budget when the request names no number of frames, milliseconds.
 constexpr double timing_budget_ms = 2500.0;
 constexpr std::uint32_t fewest_frames = 1;
 
@@ -30,7 +30,7 @@ constexpr double baseline_budget_ms = 500.0;
 constexpr std::uint32_t fewest_baseline_frames = 2;
 
 /// A frame that takes longer is timed the once that it is drawn: what is compiled in it is a small
-/// part of it, and nobody gains by waiting for it again.
+/// part of it, and waiting for it again gains nothing.
 constexpr double longest_repeated_ms = 2000.0;
 
 json number_or_null(double value) {

@@ -58,7 +58,8 @@ class WorkerProcess {
 
  private:
   [[noreturn]] void lost(const std::string& during);
-  /// What became of an exchange: returns where the message passed, else ends the worker and throws.
+  /// What became of an exchange: returns where the message passed, otherwise ends the worker and
+  /// throws.
   void require_message(Exchange outcome);
   Message read(std::chrono::steady_clock::time_point deadline,
                const std::function<bool()>& cancelled);

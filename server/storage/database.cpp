@@ -242,7 +242,7 @@ void Database::run_batch(const Batch& batch) {
         savepoint.release();
         changed.merge(touched);
       } catch (...) {
-        // SQLite gives the whole transaction up on a full disk: nobody's change stands then.
+        // SQLite gives the whole transaction up on a full disk: no change is kept then.
         if (sqlite3_get_autocommit(writer->getHandle()) != 0) throw;
         pending->failure = std::current_exception();
       }

@@ -43,7 +43,7 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Runs `work(Connection&)` in a transaction and answers what it returns; rolls its changes
+  /// Runs `work(Connection&)` in a transaction and returns what it returns; rolls its changes
   /// back where it throws.
   template <class Work>
   auto write(Work work) {

@@ -7,7 +7,7 @@
 namespace penumbra::server::storage {
 namespace {
 
-/// study::next_place, found in indexes: the first place that nobody holds any more, or a new one.
+/// study::next_place, found in indexes: the first place that is no longer held, or a new one.
 /// Looking at every place would make a study's enrolments cost the square of their number.
 std::size_t next_place(SQLite::Database& connection, const ParticipantRecord& fresh,
                        const std::string& abandoned_before) {
@@ -67,7 +67,7 @@ void check_enrolment(SQLite::Database& connection, const ParticipantRecord& fres
                 "parameters");
 }
 
-/// Place of the new person, taken away from whoever left it.
+/// Place of the new person, taken over from the one who left it.
 std::size_t take_place(SQLite::Database& connection, const ParticipantRecord& fresh,
                        const std::string& abandoned_before) {
   if (fresh.test) {
@@ -144,7 +144,7 @@ void check_answerable(Connection& connection, const ParticipantRecord& participa
   if (query->getColumn(1).getInt() != 0) throw Error("conflict", "the study is closed", "study");
 }
 
-/// Takes the mark from the page's current answer and answers its id, empty where there is none.
+/// Takes the mark from the page's current answer and returns its id, empty where there is none.
 std::string retire_current(Connection& connection, std::int64_t participant, int page) {
   auto query = connection.query(
       "SELECT answer_id FROM answers WHERE participant = ? AND page = ? AND "

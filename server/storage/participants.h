@@ -64,7 +64,7 @@ class Participants {
   explicit Participants(Database& database_) : database(database_) {}
 
   /// Enrols a person; `fresh` brings everything but key and place. The same enrolment_id in the
-  /// same study again answers the person stored first. The place is study::next_place; a place is
+  /// same study again returns the person stored first. The place is study::next_place; a place is
   /// given away when its holder has not completed and was not seen since `abandoned_before`.
   /// Throws `conflict` where the version is not open (tests may enter drafts as well), `quota`
   /// people (0: no limit) have completed, or with `once` the person_id has entered any version.
@@ -76,19 +76,19 @@ class Participants {
   /// Current answers, by page.
   std::vector<AnswerRecord> answers(std::int64_t participant);
 
-  /// Stores an answer and answers the reply that is stored with it. The same answer_id again gets
-  /// the reply stored first if `same(stored body)` says that the content is equal, else `conflict`.
-  /// A new answer_id replaces the page's current answer, which stays as history. Throws `conflict`
-  /// after completion and where the version was closed before `closed_before`: people who were amid
-  /// it have a while to finish. `make_reply` gets the answer_id of the answer replaced (empty:
-  /// none) and the number of pages answered now.
+  /// Stores an answer and returns the reply that is stored with it. The same answer_id again gets
+  /// the reply stored first if `same(stored body)` says that the content is equal, otherwise
+  /// `conflict`. A new answer_id replaces the page's current answer, which stays as history. Throws
+  /// `conflict` after completion and where the version was closed before `closed_before`: people
+  /// who were amid it have a while to finish. `make_reply` gets the answer_id of the answer
+  /// replaced (empty: none) and the number of pages answered now.
   nlohmann::json answer(const ParticipantRecord& participant, const AnswerRecord& fresh,
                         const std::function<bool(const nlohmann::json&)>& same,
                         const std::function<nlohmann::json(const std::string&, int)>& make_reply,
                         const std::string& closed_before = {});
 
-  /// Marks as completed once all `pages` have an answer (else `conflict`), with details about the
-  /// person added to those noted before. Repeating changes nothing.
+  /// Marks as completed once all `pages` have an answer (otherwise `conflict`), with details about
+  /// the person added to those noted before. Repeating changes nothing.
   void complete(const ParticipantRecord& participant, int pages, const nlohmann::json& details,
                 const std::string& now);
 
@@ -96,7 +96,7 @@ class Participants {
   ParticipantRecord note_details(const ParticipantRecord& participant,
                                  const nlohmann::json& details);
 
-  /// Deletes the person who holds the code, with all answers; false where nobody does.
+  /// Deletes the person who holds the code, with all answers; false where there is none.
   bool withdraw(const std::string& code, const std::string& now);
 
   /// Records a decision. False where the study has no such person.

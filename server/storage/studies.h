@@ -52,7 +52,7 @@ class Studies {
  public:
   explicit Studies(Database& database_) : database(database_) {}
 
-  /// Stores the document as draft: replaces the draft there is, with its previews, else starts
+  /// Stores the document as draft: replaces the draft there is, with its previews, otherwise starts
   /// version 1, or the version after the last published one. A document that a version has already
   /// changes nothing, and that version is returned. Throws `conflict` while that study is being
   /// published.

@@ -23,7 +23,7 @@ struct PairedT {
 PairedT paired_t(const std::vector<double>& differences);
 
 /// Wilcoxon's signed rank of differences a - b, by the rules of R 4.2's wilcox.test: zeros dropped;
-/// exact below 50 differences without ties or zeros, else normal with tie and continuity
+/// exact below 50 differences without ties or zeros, otherwise normal with tie and continuity
 /// correction.
 struct SignedRank {
   std::size_t n = 0;        ///< differences that are not zero

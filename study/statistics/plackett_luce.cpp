@@ -65,7 +65,7 @@ struct Choices {
   }
 };
 
-/// Groups of items that comparisons hold together, whoever won; one group where all are held.
+/// Groups of items that comparisons hold together, won or lost; one group where all are held.
 std::vector<Set> connected_groups(const Choices& choices, std::size_t items) {
   Set group(items);
   for (std::size_t i = 0; i < items; ++i) group[i] = i;

@@ -46,7 +46,7 @@ PlackettLuce fit_plackett_luce(const std::vector<Ranking>& rankings, std::size_t
 inline constexpr const char* not_connected = "not connected: some techniques were never compared";
 
 struct Comparability {
-  std::vector<std::vector<std::size_t>> groups;  ///< held together by comparisons, whoever won
+  std::vector<std::vector<std::size_t>> groups;  ///< held together by comparisons, won or lost
   bool bounded = false;                          ///< no set of items beats all others every time
 };
 Comparability comparability(const std::vector<Ranking>& rankings, std::size_t items);

@@ -27,7 +27,7 @@ float farthest_depth(MapPoint point) {
 }
 #endif
 
-// exp(c (z - d)) stands for a comparison only where nothing in the kernel lies behind the receiver
+// exp(c (z - d)) replaces a comparison only where nothing in the kernel lies behind the receiver
 // (Adorjan 2013, 2.2.2). Judged without any bias: the map's own is taken back.
 bool assumption_fails(MapPoint point, float stored) {
   if (parameter_fallback == fallback_none) return false;

@@ -9,7 +9,7 @@ float calculate_shadow(ShadowQuery query) {
   return mask > 0.5 ? 1.0 : 0.0;
 }
 
-// The map's answers in grey, samples that volumes decide in red (dark) and yellow (lit).
+// The map's results in grey, samples that volumes decide in red (dark) and yellow (lit).
 vec4 draw_diagnostic_mask(ShadowQuery query, vec2 picture) {
   float mask = texelFetch(hybrid_mask, ivec2(query.pixel), 0).r;
   if (query.point < 0) return vec4(0.1, 0.1, 0.2, 1.0);

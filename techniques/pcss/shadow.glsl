@@ -90,7 +90,7 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
     float stored = fetch_depth(point, texel);
     if (receiver_depth(point, texel) <= stored) continue;
     float distance = distance_of_depth(point, stored);
-    // A tap stands for an area: the inverse of the taps' density there.
+    // A tap represents an area: the inverse of the taps' density there.
     float share = 1.0 / (1.0 + 0.25 * pow(max(away, 1e-4), -1.5));
     sum += share * distance;
     count += share;
@@ -100,7 +100,7 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
   return parameter_blocker == blocker_nearest ? nearest : sum / count;
 }
 
-// What a tap stands for: light from one place of the extent. Behind the receiver's own plane it does
+// What a tap represents: light from one place of the extent. Behind the receiver's own plane it does
 // not reach it.
 bool is_risen(ShadowQuery query, ExtentOnMap extent, vec2 tap) {
   bool directional = int(light.position.w) == light_kind_directional;

@@ -12,7 +12,7 @@ float wedge_correction(vec2 pixel) {
 }
 
 // Mean over points of the light of how often each is counted more than once, given the count of its
-// centre; less than nought counts the other way.
+// centre; negative counts mean the opposite.
 float counted_too_often(float center, vec4 packed) {
   float excess = 0.0;
   for (int i = 0; i < 4; ++i)

@@ -19,7 +19,7 @@ after(async () => {
   await server?.stop();
 });
 
-/// Runs one person's visit and answers the rows that the visit added to responses.csv.
+/// Runs one person's visit and returns the rows that the visit added to responses.csv.
 async function visit(course, options = {}) {
   const known = new Set((await server.responses(study)).map((row) => row.participant));
   const person = await Person.arrive(browser, server, study, options);

@@ -1,4 +1,4 @@
-// Bytes after a refused head are never read as a request, whoever sends them by whatever way.
+// Bytes after a refused head are never read as a request, however they are sent.
 #include <array>
 #include <cstdio>
 

@@ -16,7 +16,7 @@ struct Verdict {
   std::size_t different = 0;
 };
 
-/// Whether light from the centre comes here at all; elsewhere nobody reads the mask.
+/// Whether light from the centre comes here at all; elsewhere the mask is not read.
 bool inside_light(const WorldLight& light, const glm::vec3& position) {
   if (light.kind != LightKind::spot) return true;
   const glm::dvec3 offset = glm::dvec3(position) - light.position;

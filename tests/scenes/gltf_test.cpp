@@ -81,7 +81,7 @@ TEST(Gltf, TurnsStripsAndFansIntoTrianglesThatKeepTheirSide) {
 }
 
 TEST(Gltf, ReadsQuantisedAndNormalisedAttributes) {
-  // Normalised: the extremes of a signed short stand for -1 and 1, of an unsigned byte for 0 and 1.
+  // Normalised: the extremes of a signed short mean -1 and 1, of an unsigned byte for 0 and 1.
   GltfFile file;
   file.document["extensionsRequired"] = {"KHR_mesh_quantization"};
   const int positions =

@@ -20,7 +20,7 @@ class HardTruth {
   HardTruth(const HardTruth&) = delete;
   HardTruth& operator=(const HardTruth&) = delete;
 
-  /// A channel per light: 1 where the middle of the pixel sees the light's centre, else 0.
+  /// A channel per light: 1 where the middle of the pixel sees the light's centre, otherwise 0.
   ImageF visibility(const std::string& camera, std::uint32_t width, std::uint32_t height) const;
 
   /// True if nothing that casts shadows stands between two points; both ends are drawn in a little.

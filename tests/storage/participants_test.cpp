@@ -166,7 +166,7 @@ TEST_F(Participation, LetsPeopleFinishAVersionThatTheNextOneReplaced) {
   studies.open("s", 2, "2026-01-07");
   EXPECT_EQ(code_of([&] { answer(who, 0, "x", {}); }), "");
   participants.complete(who, 1, json::object(), "2026-01-07");
-  EXPECT_EQ(code_of([&] { enter("b"); }), "conflict");  // of version 1, which takes nobody new
+  EXPECT_EQ(code_of([&] { enter("b"); }), "conflict");  // of version 1, which takes no one new
 }
 
 TEST_F(Participation, TestsTakeNoPlaceAndAreNotCounted) {

@@ -30,7 +30,8 @@ std::vector<std::vector<std::string>> cells_of(const std::string& text) {
 }
 
 TEST(Pairs, HoldEveryPairOnceAsPwcmpReadsIt) {
-  // pw_scale_table(T, 'scene', {'A','B'}, 'observer', 'selected'): 1 where A was selected, else 0.
+  // pw_scale_table(T, 'scene', {'A','B'}, 'observer', 'selected'): 1 where A was selected,
+  // otherwise 0.
   PairsTable table;
   std::string text = PairsTable::header();
   table.append({row_of("P1", "c", 3), row_of("P1", "a", 1), row_of("P1", "b", 2)}, text);

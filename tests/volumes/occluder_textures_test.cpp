@@ -161,7 +161,7 @@ TEST(OccluderTextures, cast_false_shadows_without_the_sign_test) {
   EXPECT_GT(without, 2.0 * with + 0.01);
 }
 
-/// A plate 1 m above the ground, and a plane that stands for it but shadows only where z < 0.
+/// A plate 1 m above the ground, and a plane that replaces it but shadows only where z < 0.
 constexpr const char* document = R"({
   "penumbra_scene": 1, "title": "Authored",
   "materials": [{"name": "grey", "base_color": [0.7, 0.7, 0.7]}],

@@ -16,7 +16,7 @@ export class Person {
     this.path = `/api/v1/participants/${encodeURIComponent(this.token)}`;
   }
 
-  /// Whoever entered the study on this device before, or null. Throws ApiError where the server
+  /// The person who entered the study on this device before, or null. Throws ApiError where the server
   /// cannot be asked.
   static async resume(storage, outbox, study) {
     const known = await storage.get(`person:${study}`);
@@ -67,7 +67,7 @@ export class Person {
     return this.pages.length;
   }
 
-  /// What the page shows when it opens: the draft, else the answer given, else nothing.
+  /// What the page shows when it opens: the draft, otherwise the answer given, otherwise nothing.
   async kept(page) {
     const answer = await this.answer_of(page);
     return this.drafts.get(this.key("draft", page)) ?? (answer ? { ...answer, observations: answer } : {});

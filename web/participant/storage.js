@@ -111,7 +111,7 @@ export async function open_storage() {
 }
 
 /// What changes with every move. localStorage writes before it returns, where a transaction that a
-/// reload overtakes is rolled back; whoever forbids it keeps drafts until the next reload.
+/// reload overtakes is rolled back; where localStorage is forbidden, drafts are kept until the next reload.
 export class Drafts {
   constructor() {
     this.memory = new Map();

@@ -35,7 +35,7 @@ async function failure_of(response) {
   });
 }
 
-/// Answers the parsed JSON (null for an empty body). Throws ApiError.
+/// Returns the parsed JSON (null for an empty body). Throws ApiError.
 /// A Blob goes as it is, anything else as JSON.
 export async function call(method, path, body = undefined, { deadline_ms = reply_deadline_ms } = {}) {
   const file = body instanceof Blob;
