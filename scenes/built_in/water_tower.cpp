@@ -86,14 +86,14 @@ Scene make_water_tower() {
       b.look("tank", {0.74f, 0.80f, 0.82f}, b.texture("painted_metal", 132), 2.0, 0.08f, 50.0f),
       b.look("steel", {0.44f, 0.45f, 0.46f}, b.texture("painted_metal", 133), 1.5, 0.12f, 60.0f),
       b.look("roof", {0.58f, 0.22f, 0.16f}, b.texture("corrugated", 134), 1.6, 0.06f, 30.0f)};
-  const Look block = b.look("block", {0.92f, 0.90f, 0.86f}, b.texture("plaster", 135), 2.0);
+  const Look footing = b.look("footing", {0.92f, 0.90f, 0.86f}, b.texture("plaster", 135), 2.0);
   b.ground({-26.0, -30.0}, {26.0, 22.0}, ground, "yard", 0.4);
   Mesh mesh;
   add_tank(mesh, looks);
   add_legs(mesh, looks);
   for (int leg = 0; leg < 6; ++leg) {
     const glm::dvec3 foot = leg_at(leg, 0.0);
-    add_part(mesh, rounded_box({-0.45, -0.1, -0.45}, {0.45, 0.3, 0.45}, 0.04, 1), block,
+    add_part(mesh, rounded_box({-0.45, -0.1, -0.45}, {0.45, 0.3, 0.45}, 0.04, 1), footing,
              move({foot.x, 0.0, foot.z}) * turn_y(-60.0 * leg - 10.0));
   }
   gather_materials(mesh);
