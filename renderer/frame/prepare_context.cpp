@@ -24,7 +24,7 @@ std::uint64_t PrepareContext::draw_casters(vulkan::Commands& commands, const Cas
   const auto& ranges = scene.ranges();
   const auto sides = side_planes(glm::dmat4(clip_from_world));
   const auto drawn = [&](const DrawRange& range) {
-    return range.casts_shadow && may_touch(range.box(), sides);
+    return (range.casts_shadow || program.all_surfaces) && may_touch(range.box(), sides);
   };
   std::uint64_t drawn_indices = 0;
   for (std::size_t i = 0; i < ranges.size();) {

@@ -18,6 +18,7 @@ struct CasterProgram {
   std::string preamble;
   vulkan::GraphicsState state;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< of single-sided materials; others are never culled
+  bool all_surfaces = false;                 ///< those too that cast no shadow
 };
 
 /// What a technique may use in `prepare`: the device, the scene, its light, the geometry buffer,

@@ -41,6 +41,12 @@ std::vector<Parameter> map_parameters() {
                      .in("texels"));
   for (const Parameter& parameter : layout_parameters()) list.push_back(parameter);
 
+  list.push_back(choice(
+      "range", "boxes", {"boxes", "visible", "fixed"},
+      "Where the map's range of depth lies. boxes: from the nearest caster's box to the farthest "
+      "receiver's. visible: from the nearest to the farthest place that the camera sees and that "
+      "faces the light, with casters before it clamped onto near. fixed: from the light to the end "
+      "of the scene."));
   list.push_back(
       choice("bias_strategy", "receiver-plane",
              {"constant", "slope", "normal-offset", "receiver-plane", "back-faces", "second-depth",
@@ -137,6 +143,27 @@ void note_triangles(PrepareContext& context, const std::vector<std::uint64_t>& t
                           ": the views of its map draw triangles: " + counts);
 }
 
+/// Fits ranges to what is seen, for filters that bear casters clamped onto near.
+void see_ranges(PrepareContext& context, std::vector<shader::MapView>& views, const MapUse& use,
+                const std::function<std::vector<Bounds>(const std::vector<shader::MapView>&, bool)>&
+                    seen_bounds) {
+  const std::string light = "light " + context.input.light.name + ": ";
+  if (use.follows_extent) {
+    context.notes.push_back(light +
+                            "range visible would lose the blockers' distances, which penumbrae "
+                            "follow: boxes is kept");
+    return;
+  }
+  if (use.common_range)
+    context.notes.push_back(light +
+                            "casters before what is seen are clamped onto near, which changes "
+                            "what the filter averages");
+  const ParameterValues& parameters = context.input.parameters;
+  fit_ranges_to(views, seen_bounds(views, false), use, real_of(parameters, "slope_scale"),
+                real_of(parameters, "bias"),
+                static_cast<double>(integer_of(parameters, "map_size")));
+}
+
 VkFormat depth_format(const ParameterValues& parameters) {
   const bool compact =
       parameters.contains("depth_bits") && choice_of(parameters, "depth_bits") == "16";
@@ -184,17 +211,35 @@ void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   needs.memory.push_back({"shadow map",
                           texels * vulkan::texel_bytes(depth_format(input.parameters)), size,
                           "map_size"});
+  if (chosen_layout(input.parameters).reads_samples ||
+      choice_of(input.parameters, "range") == "visible")
+    SeenSamples::require(input, needs);
   if (!knows_two_surfaces(input.parameters)) return;
   for (const char* layer : {"first depths", "second depths"})
     needs.memory.push_back({layer, texels * vulkan::texel_bytes(layer_format), size, "map_size"});
 }
 
+DepthMap::Views DepthMap::fit_views(PrepareContext& context, const MapUse& use) {
+  const ParameterValues& parameters = context.input.parameters;
+  const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
+  seen_.forget();
+  const auto seen = [&](const Views& asked, bool by_depth) {
+    return seen_.bounds(context, asked, by_depth);
+  };
+  Views views = chosen_layout(parameters)
+                    .fit({context.scene, context.light, context.fit, context.picture_camera,
+                          parameters, use, size, seen, context.notes});
+  if (choice_of(parameters, "range") == "fixed")
+    fix_ranges(views, context.scene, context.fit);
+  else if (choice_of(parameters, "range") == "visible")
+    see_ranges(context, views, use, seen);
+  return views;
+}
+
 void DepthMap::draw(PrepareContext& context, const MapUse& use) {
   const ParameterValues& parameters = context.input.parameters;
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
-  Views views = chosen_layout(parameters)
-                    .fit({context.scene, context.light, context.fit, context.picture_camera,
-                          parameters, use, size});
+  Views views = fit_views(context, use);
   const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
   for (shader::MapView& view : views) {
     set_given_range(view, parameters);

@@ -2,6 +2,7 @@
 
 #include "renderer/frame/prepare_context.h"
 #include "renderer/shadow_maps/layout.h"
+#include "renderer/shadow_maps/seen_samples.h"
 
 namespace penumbra::shadow_maps {
 
@@ -45,11 +46,13 @@ class DepthMap {
   void draw_casters(PrepareContext& context, const Views& views, const vulkan::Image& target,
                     const std::string& layer) const;
   void draw_layers(PrepareContext& context, const Views& views);
+  Views fit_views(PrepareContext& context, const MapUse& use);
 
   vulkan::Image image_;
   vulkan::Image first_;   ///< nearest surfaces, for strategies that know two
   vulkan::Image second_;  ///< those behind them
   vulkan::BufferRange constants_;
+  SeenSamples seen_;
 };
 
 /// A technique that draws a depth map for every light; what it is for is said by its GLSL.

@@ -29,6 +29,10 @@ struct ViewFitting {
   const ParameterValues& parameters;
   const MapUse& use;
   std::uint32_t size;  ///< texels along a side of a view
+  /// SeenSamples::bounds.
+  std::function<std::vector<Bounds>(const std::vector<shader::MapView>&, bool by_depth)>
+      seen_bounds;
+  std::vector<std::string>& notes;  ///< shown with the result
 };
 
 /// Where depth lives: which views of the scene a light's map has, and which of them tell of a
@@ -42,6 +46,7 @@ struct Layout {
   std::function<std::string(LightKind)> refusal;
   std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
   std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
+  bool reads_samples = false;  ///< it asks for `seen_bounds`
 };
 
 /// A refusal of all lights but directional ones.

@@ -173,18 +173,74 @@ void set_range(shader::MapView& view, float near, float far) {
   view.range = {near, far, 1.0f / (far - near), view.range.w};
 }
 
+namespace {
+
+/// Longest step on the unwarped map for a step of one texel, over the map's corners, from above.
+double widest_texel(const shader::MapView& view, double size) {
+  const glm::dmat3 unwarp{glm::dvec3(view.unwarp[0]), glm::dvec3(view.unwarp[1]),
+                          glm::dvec3(view.unwarp[2])};
+  double widest = 0.0;
+  for (const double x : {0.0, size})
+    for (const double y : {0.0, size}) {
+      const glm::dvec3 place = unwarp * glm::dvec3(x, y, 1.0);
+      double squares = 0.0;
+      for (int column = 0; column < 2; ++column) {
+        const glm::dvec2 step =
+            (glm::dvec2(unwarp[column]) - glm::dvec2(place) / place.z * unwarp[column].z) / place.z;
+        squares += glm::dot(step, step);
+      }
+      widest = std::max(widest, std::sqrt(squares));
+    }
+  return widest;
+}
+
+/// One range that holds all.
+DepthRange hull(const std::vector<DepthRange>& ranges) {
+  DepthRange all;
+  for (const DepthRange& range : ranges) {
+    all.near = std::min(all.near, range.near);
+    all.far = std::max(all.far, range.far);
+  }
+  return all;
+}
+
+}  // namespace
+
+void fix_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit) {
+  DepthRange all{0.0, 0.0};
+  for (const shader::MapView& view : views) {
+    const auto add = [&](const glm::dvec3& point) {
+      all.far =
+          std::max(all.far, glm::dot(point - glm::dvec3(view.origin), glm::dvec3(view.forward)));
+    };
+    visit_clipped_corners(covered_box(scene, fit), {}, add);
+  }
+  for (shader::MapView& view : views) set_fitted_range(view, all);
+}
+
+void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds>& seen,
+                   const MapUse& use, double slope_scale, double bias, double size) {
+  std::vector<DepthRange> ranges;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ranges.emplace_back();
+    if (seen[i].empty()) continue;
+    // What a comparison grants must not reach before near, where casters are that were clamped.
+    const double distance = views[i].origin.w > 0.5f ? seen[i].low.z : 1.0;
+    const double texel = static_cast<double>(views[i].forward.w) * distance *
+                         std::max(widest_texel(views[i], size), 1.0);
+    const double granted = 3.0 * (1.0 + use.kernel_radius) * slope_scale * texel + bias;
+    ranges[i] = {seen[i].low.z - granted, seen[i].high.z};
+  }
+  if (use.common_range) ranges.assign(ranges.size(), hull(ranges));
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (ranges[i].far > ranges[i].near) set_fitted_range(views[i], ranges[i]);
+}
+
 void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit,
                 bool common) {
   std::vector<DepthRange> ranges;
   for (const shader::MapView& view : views) ranges.push_back(range_of(view, scene, fit));
-  if (common) {
-    DepthRange all;
-    for (const DepthRange& range : ranges) {
-      all.near = std::min(all.near, range.near);
-      all.far = std::max(all.far, range.far);
-    }
-    ranges.assign(ranges.size(), all);
-  }
+  if (common) ranges.assign(ranges.size(), hull(ranges));
   for (std::size_t i = 0; i < views.size(); ++i) set_fitted_range(views[i], ranges[i]);
 }
 

@@ -56,6 +56,16 @@ Bounds bounds_along(const Bounds& box, const ViewAxes& axes);
 void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit,
                 bool common);
 
+/// Gives views the range from the light, or from where directional lights' views begin, to the far
+/// end of the scene, whatever is seen of it.
+void fix_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit);
+
+/// Gives views that show samples of what is seen (SeenSamples::bounds) the range of these, so that
+/// casters before them are clamped onto near. `use` and `slope_scale` tell what comparisons grant,
+/// `bias` m more. `use.common_range`: one range for all.
+void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds>& seen,
+                   const MapUse& use, double slope_scale, double bias, double size);
+
 /// The range of a view from near to far, m along its axis.
 void set_range(shader::MapView& view, float near, float far);
 

@@ -52,6 +52,27 @@ glm::dmat3 fill(const glm::dmat3& warp, const std::vector<glm::dvec2>& points, d
   return placed * warp;
 }
 
+/// Area of the convex hull (Andrew 1979).
+double hull_area(std::vector<glm::dvec2> points) {
+  const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
+  std::sort(points.begin(), points.end(), [](const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  double twice = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    std::vector<glm::dvec2> chain;
+    for (const glm::dvec2& point : points) {
+      while (chain.size() > 1 &&
+             cross(chain.back() - chain[chain.size() - 2], point - chain.back()) <= 0.0)
+        chain.pop_back();
+      chain.push_back(point);
+    }
+    for (std::size_t i = 1; i < chain.size(); ++i) twice += cross(chain[i - 1], chain[i]);
+    std::reverse(points.begin(), points.end());
+  }
+  return 0.5 * twice;
+}
+
 /// Axes whose y, downwards on the map, leads away from the camera.
 ViewAxes axes_along(const WorldLight& light, const glm::dvec3& ahead, double sine) {
   if (sine < parallel) return {light.direction, light.up};
@@ -95,6 +116,18 @@ void bend_and_fill(shader::MapView& view, const SeenPlaces& seen, const Bend& be
   warp_view(view, fill(warp, seen.points, share), fitting.size);
 }
 
+void note_used_texels(const ViewFitting& fitting, const shader::MapView& view,
+                      const std::vector<glm::dvec3>& points) {
+  std::vector<glm::dvec2> places;
+  for (const glm::dvec3& point : points) {
+    const glm::dvec4 clip = glm::dmat4(view.clip_from_world) * glm::dvec4(point, 1.0);
+    if (clip.w > 0.0) places.push_back(glm::clamp(glm::dvec2(clip) / clip.w, -1.0, 1.0));
+  }
+  const double share = hull_area(std::move(places)) / 4.0;
+  fitting.notes.push_back("light " + fitting.light.source->name + ": what is seen covers " +
+                          std::to_string(std::lround(100.0 * share)) + "% of its map");
+}
+
 std::vector<glm::dvec3> seen_points(const ViewFitting& fitting, const Slice& slice) {
   std::vector<glm::dvec3> points;
   visit_seen(fitting, slice, [&](const glm::dvec3& point) { points.push_back(point); });
@@ -110,7 +143,8 @@ std::vector<shader::MapView> fit_warped(const ViewFitting& fitting,
   const double sine = glm::length(ahead);
   const ViewAxes axes = axes_along(light, ahead, sine);
   const Slice seen = visible_slice(fitting);
-  FocusedView focused = focused_view(fitting, axes, seen_points(fitting, seen));
+  const std::vector<glm::dvec3> points = seen_points(fitting, seen);
+  FocusedView focused = focused_view(fitting, axes, points);
 
   Bend bend{(glm::dot(camera.position, axes.right()) - focused.center.x) / focused.half,
             std::numeric_limits<double>::infinity()};
@@ -119,6 +153,7 @@ std::vector<shader::MapView> fit_warped(const ViewFitting& fitting,
   const double covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes).size().z;
   bend_and_fill(focused.view, focused.seen, bend,
                 extent_radius(*light.source) * covered / focused.half, fitting);
+  note_used_texels(fitting, focused.view, points);
   std::vector<shader::MapView> views{focused.view};
   fit_ranges(views, fitting.scene, fitting.fit, true);
   return views;

@@ -54,6 +54,11 @@ struct Bend {
 void bend_and_fill(shader::MapView& view, const SeenPlaces& seen, const Bend& bend, double reach,
                    const ViewFitting& fitting);
 
+/// Notes the share of a view's texels that lie between points that span what is seen: the others
+/// are wasted.
+void note_used_texels(const ViewFitting& fitting, const shader::MapView& view,
+                      const std::vector<glm::dvec3>& points);
+
 /// What a warp may depend on.
 struct WarpInput {
   Slice seen;     ///< along the camera's direction

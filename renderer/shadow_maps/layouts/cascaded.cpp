@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/shadow_maps/cascades.h"
 #include "renderer/shadow_maps/light_view.h"
-#include "renderer/shadow_maps/seen.h"
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -14,18 +14,7 @@ Slice steady_slice(const Slice& seen) {
           std::exp2(std::ceil(4.0 * std::log2(seen.far)) / 4.0)};
 }
 
-/// Splits between even depths (lambda 0) and even ratios of depths (lambda 1): the practical scheme
-/// of Zhang et al. 2006. One more than there are cascades.
-std::vector<double> split_depths(const Slice& all, std::int64_t cascades, double lambda) {
-  std::vector<double> splits;
-  for (std::int64_t i = 0; i <= cascades; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(cascades);
-    const double even = all.near + all.depth() * share;
-    splits.push_back(lambda * all.near * std::pow(all.far / all.near, share) +
-                     (1.0 - lambda) * even);
-  }
-  return splits;
-}
+constexpr CascadeNames box_names{"cascades", "split_lambda", "cascade_blend"};
 
 /// A square of the plane across the light's direction, m.
 struct Square {
@@ -77,7 +66,6 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
   const ParameterValues& parameters = fitting.parameters;
   const WorldLight& light = fitting.light;
   const bool steady = boolean_of(parameters, "cascade_snapping");
-  const double blend = real_of(parameters, "cascade_blend");
   const ViewAxes axes{light.direction, light.up};
   const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
   const double widen = 1.0 / (1.0 - 2.0 * guard_share(fitting.use, fitting.size));
@@ -86,13 +74,13 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
       fitting.use.follows_extent ? extent_radius(*light.source) * covered.size().z : 0.0;
 
   const Slice seen = visible_slice(fitting);
-  const auto splits =
-      split_depths(steady ? steady_slice(seen) : seen, integer_of(parameters, "cascades"),
-                   real_of(parameters, "split_lambda"));
+  const auto slices = blended_slices(
+      split_depths(steady ? steady_slice(seen) : seen, cascade_count(parameters, box_names),
+                   real_of(parameters, box_names.lambda)),
+      real_of(parameters, box_names.blend));
   std::vector<shader::MapView> views;
-  double begin = splits.front();
-  for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
-    const Slice slice{begin, splits[i + 1]};
+  for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
+    const Slice& slice = slices[i];
     Square square =
         steady ? steady_square(fitting.camera, slice, axes) : tight_square(fitting, slice, axes);
     square.half = std::max(square.half, 1e-6);
@@ -102,9 +90,7 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
     const glm::dvec3 origin =
         square.center.x * axes.right() + square.center.y * axes.up + covered.low.z * axes.forward;
     shader::MapView view = make_view(origin, axes, square.half, false, fitting.size);
-    // The next cascade takes over gradually from here to the end, and so begins here.
-    begin = splits[i + 1] - blend * (splits[i + 1] - splits[i]);
-    view.choice = {static_cast<float>(begin), static_cast<float>(splits[i + 1]), 0.0f, 0.0f};
+    set_choice(view, slices, i);
     views.push_back(view);
   }
   fit_ranges(views, fitting.scene, fitting.fit, fitting.use.common_range);
@@ -112,24 +98,12 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
 }
 
 std::vector<Parameter> cascade_parameters() {
-  const Parameter cascades =
-      integer("cascades", 4, {2, shader::max_map_views},
-              "Cascades that the depth before the camera is cut into, each map_size wide.");
-
-  const Parameter lambda = real("split_lambda", 0.5, {0.0, 1.0},
-                                "Where cascades end. 0: all are equally deep. 1: each is as many "
-                                "times deeper than the one before it.");
-
-  const Parameter blend =
-      real("cascade_blend", 0.1, {0.0, 0.5},
-           "Last part of a cascade's depth, over which the next one takes over gradually.")
-          .in("of depth");
-
-  const Parameter snapping =
+  std::vector<Parameter> list = split_parameters(box_names);
+  list.push_back(
       boolean("cascade_snapping", true,
               "Fit cascades to spheres and move them by whole texels, so that shadows do not crawl "
-              "when the camera moves; otherwise fit them tightly to what is seen.");
-  return {cascades, lambda, blend, snapping};
+              "when the camera moves; otherwise fit them tightly to what is seen."));
+  return list;
 }
 
 }  // namespace
@@ -144,7 +118,7 @@ Layout describe_cascaded() {
           .refusal = only_directional,
           .view_count =
               [](const Light&, const ParameterValues& parameters) {
-                return static_cast<std::uint32_t>(integer_of(parameters, "cascades"));
+                return cascade_count(parameters, box_names);
               },
           .fit = fit_cascades};
 }

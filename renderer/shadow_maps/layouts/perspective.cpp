@@ -194,7 +194,8 @@ shader::MapView fit_view(const ViewFitting& fitting) {
   const WorldLight& light = fitting.light;
   const CameraMatrices& camera = fitting.camera;
   const Slice slice = visible_slice(fitting);
-  std::vector<glm::dvec3> points = seen_points(fitting, slice);
+  const std::vector<glm::dvec3> seen = seen_points(fitting, slice);
+  std::vector<glm::dvec3> points = seen;
   Plain plain = plain_view(fitting, axes_with_down(light, camera.direction), points);
 
   // Take that picture from so far behind the camera that it holds every caster.
@@ -219,6 +220,7 @@ shader::MapView fit_view(const ViewFitting& fitting) {
     bend.across = narrowest_across(plain.seen, bend.before);
   }
   bend_and_fill(plain.view, plain.seen, bend, reach_of(fitting, plain), fitting);
+  note_used_texels(fitting, plain.view, seen);
   if (!moves)
     cut_casters(plain.view,
                 {camera.direction, -glm::dot(camera.direction, near_corners(camera)[0])});

@@ -1,0 +1,43 @@
+// Bounds of what is seen in each view, along the view's axes.
+#include "renderer/shaders/frame.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140) uniform MapBlock { MapData map; };
+uniform sampler2D seen_positions;
+layout(std430) buffer SeenBoundsBlock { uint found[]; };  // three least, three greatest for each view
+layout(push_constant) uniform ChoiceBlock { uint by_depth; } choice;
+
+/// Place of a float in the order of all floats: integers have atomic minima and maxima everywhere.
+uint place_of(float value) {
+  uint bits = floatBitsToUint(value);
+  return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+bool is_in_view(MapView view, vec3 position) {
+  if (choice.by_depth != 0u) {
+    float depth = dot(position - frame.camera_position.xyz, frame.camera_direction.xyz);
+    return depth >= view.choice.x && depth <= view.choice.y;
+  }
+  vec4 clip = view.clip_from_world * vec4(position, 1.0);
+  return clip.w > 0.0 && all(lessThanEqual(abs(clip.xy), vec2(clip.w)));
+}
+
+void main() {
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(place, textureSize(seen_positions, 0)))) return;
+  vec4 position = texelFetch(seen_positions, place, 0);
+  float reach = position.w;
+  if (reach <= 0.0) return;
+  for (int i = 0; i < int(map.texel.z); ++i) {
+    MapView view = map.views[i];
+    if (!is_in_view(view, position.xyz)) continue;
+    vec3 offset = position.xyz - view.origin.xyz;
+    vec3 along = vec3(dot(offset, normalize(view.right.xyz)), dot(offset, normalize(view.up.xyz)),
+                      dot(offset, view.forward.xyz));
+    for (int axis = 0; axis < 3; ++axis) {
+      atomicMin(found[6 * i + axis], place_of(along[axis] - reach));
+      atomicMax(found[6 * i + 3 + axis], place_of(along[axis] + reach));
+    }
+  }
+}

@@ -1,0 +1,33 @@
+// Places that the camera sees; w is how far the surface may reach from there to the next sample, m, and 0
+// where it faces away from the light.
+#include "renderer/shaders/caster.glsl"
+#include "renderer/shaders/shadow_query.glsl"
+
+layout(location = 0) in vec3 world_position;
+#ifdef MASKED
+layout(location = 1) in vec2 surface_uv;
+layout(location = 2) in float vertex_alpha;
+layout(push_constant) uniform DrawBlock { uint material; } draw;
+#endif
+
+layout(location = 0) out vec4 seen_position;
+
+void main() {
+  vec3 right = dFdx(world_position), down = dFdy(world_position);
+  vec3 normal = cross(right, down);
+#ifdef MASKED
+  MaterialData material = materials[draw.material];
+  float alpha = material.base_color.a * vertex_alpha;
+  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
+  if (alpha < material.surface.z) discard;
+#endif
+  bool has_eye = frame.camera_position.w > 0.5;
+  vec3 to_camera = has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
+  if (dot(normal, to_camera) < 0.0) normal = -normal;
+  bool parallel = int(light.position.w) == light_kind_directional;
+  vec3 to_light = parallel ? light_center() : light_center() - world_position;
+  // Normals of shading lean by a few degrees from those of facets.
+  float away = -0.2 * length(normal) * length(to_light);
+  float reach = max(length(right) + length(down), 1e-30);
+  seen_position = vec4(world_position, dot(normal, to_light) >= away ? reach : 0.0);
+}
