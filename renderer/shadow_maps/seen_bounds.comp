@@ -23,21 +23,33 @@ bool is_in_view(MapView view, vec3 position) {
   return clip.w > 0.0 && all(lessThanEqual(abs(clip.xy), vec2(clip.w)));
 }
 
+// Samples along a side of the square that an invocation goes through: its own minima come first, since
+// atomics on one place are dear.
+const int block = 8;
+
 void main() {
-  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(place, textureSize(seen_positions, 0)))) return;
-  vec4 position = texelFetch(seen_positions, place, 0);
-  float reach = position.w;
-  if (reach <= 0.0) return;
+  ivec2 first = block * ivec2(gl_GlobalInvocationID.xy);
+  ivec2 end = min(first + block, textureSize(seen_positions, 0));
+  if (any(greaterThanEqual(first, end))) return;
   for (int i = 0; i < int(map.texel.z); ++i) {
     MapView view = map.views[i];
-    if (!is_in_view(view, position.xyz)) continue;
-    vec3 offset = position.xyz - view.origin.xyz;
-    vec3 along = vec3(dot(offset, normalize(view.right.xyz)), dot(offset, normalize(view.up.xyz)),
-                      dot(offset, view.forward.xyz));
+    vec3 right = normalize(view.right.xyz), up = normalize(view.up.xyz);
+    vec3 low = vec3(3.0e38), high = vec3(-3.0e38);
+    for (int y = first.y; y < end.y; ++y) {
+      for (int x = first.x; x < end.x; ++x) {
+        vec4 position = texelFetch(seen_positions, ivec2(x, y), 0);
+        float reach = position.w;
+        if (reach <= 0.0 || !is_in_view(view, position.xyz)) continue;
+        vec3 offset = position.xyz - view.origin.xyz;
+        vec3 along = vec3(dot(offset, right), dot(offset, up), dot(offset, view.forward.xyz));
+        low = min(low, along - reach);
+        high = max(high, along + reach);
+      }
+    }
+    if (low.x > high.x) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      atomicMin(found[6 * i + axis], place_of(along[axis] - reach));
-      atomicMax(found[6 * i + 3 + axis], place_of(along[axis] + reach));
+      atomicMin(found[6 * i + axis], place_of(low[axis]));
+      atomicMax(found[6 * i + 3 + axis], place_of(high[axis]));
     }
   }
 }

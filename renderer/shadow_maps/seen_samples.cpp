@@ -107,7 +107,8 @@ std::vector<Bounds> SeenSamples::bounds(PrepareContext& context,
   context.pass("bounds of seen samples", [&](vulkan::Commands& commands) {
     commands.bind(pipeline, bindings);
     commands.constants(by_depth ? 1u : 0u);
-    commands.dispatch((grid.width + 7) / 8, (grid.height + 7) / 8);
+    // Groups of 8 x 8 invocations, each of which goes through a block of 8 x 8 samples.
+    commands.dispatch((grid.width + 63) / 64, (grid.height + 63) / 64);
   });
   context.recorder.flush();
 
