@@ -11,7 +11,7 @@ constexpr double tower_height = 46.0;
 constexpr double joined_at = 22.0;  ///< height where the four legs become one column, metres
 
 /// Half of the tower's outer width at a height, metres: wide feet that curve inwards.
-double half_width(double y) {
+double half_width_at(double y) {
   const double t = 1.0 - y / tower_height;
   return 0.55 + 8.6 * t * t * t;
 }
@@ -70,8 +70,8 @@ void add_gallery(Mesh& mesh, double y, double half, const Look& floor, const Loo
 
 /// The arches between the feet.
 void add_arches(Mesh& mesh, const Look& iron) {
-  const double reach = half_width(0.0) - 2.0 * half_leg(0.0) + 0.4, top = 8.2;
-  const double z = half_width(4.0) - 1.0;
+  const double reach = half_width_at(0.0) - 2.0 * half_leg(0.0) + 0.4, top = 8.2;
+  const double z = half_width_at(4.0) - 1.0;
   for (int side = 0; side < 4; ++side) {
     std::vector<glm::dvec3> arch;
     for (int i = 0; i <= 16; ++i) {
@@ -100,11 +100,11 @@ Scene make_tower() {
       std::vector<std::array<glm::dvec3, 4>> rings;
       for (int i = 0; i <= 10; ++i) {
         const double y = 0.6 + (joined_at - 0.6) * i / 10.0;
-        const double middle = half_width(y) - half_leg(y);
+        const double middle = half_width_at(y) - half_leg(y);
         rings.push_back(square(sx * middle, y, sz * middle, half_leg(y)));
       }
       add_lattice(mesh, rings, 0.13, 0.12, iron);
-      const double foot = half_width(0.6) - half_leg(0.6);
+      const double foot = half_width_at(0.6) - half_leg(0.6);
       add_part(
           mesh,
           box({sx * foot - 1.5, -0.1, sz * foot - 1.5}, {sx * foot + 1.5, 0.75, sz * foot + 1.5}),
@@ -113,12 +113,12 @@ Scene make_tower() {
   std::vector<std::array<glm::dvec3, 4>> column;
   for (int i = 0; i <= 13; ++i) {
     const double y = joined_at + (tower_height - joined_at) * i / 13.0;
-    column.push_back(square(0.0, y, 0.0, half_width(y)));
+    column.push_back(square(0.0, y, 0.0, half_width_at(y)));
   }
   add_lattice(mesh, column, 0.12, 0.10, iron);
   add_arches(mesh, iron);
-  add_gallery(mesh, 9.4, half_width(9.4) + 0.6, iron, iron);
-  add_gallery(mesh, joined_at, half_width(joined_at) + 0.7, iron, iron);
+  add_gallery(mesh, 9.4, half_width_at(9.4) + 0.6, iron, iron);
+  add_gallery(mesh, joined_at, half_width_at(joined_at) + 0.7, iron, iron);
   add_gallery(mesh, tower_height, 1.15, iron, iron);
   add_part(mesh, cylinder(0.10, 0.03, 6.0, 8), iron, move({0.0, tower_height, 0.0}), 40.0);
   gather_materials(mesh);
