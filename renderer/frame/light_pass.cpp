@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "renderer/frame/lit_part.h"
 #include "renderer/frame/sample_list.h"
 
 namespace penumbra {
@@ -201,8 +202,12 @@ void LightPass::draw_light(
   targets.depth_read_only = true;
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);
   const vulkan::Bindings all = bindings_of(pipeline);
+  const VkRect2D reached =
+      seen_part(fit_.receivers, setup_.scene.origin(), setup_.matrices.clip_from_world,
+                targets.width, targets.height);
   frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
+    vkCmdSetScissor(commands.handle(), 0, 1, &reached);
     commands.bind(pipeline, all);
     commands.full_screen_triangle();
     commands.end_rendering();

@@ -1,0 +1,92 @@
+#include "renderer/frame/lit_part.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "renderer/render.h"
+#include "renderer/scene/transforms.h"
+#include "techniques/registry.h"
+#include "tests/conformance/scenes.h"
+
+namespace penumbra {
+namespace {
+
+CameraMatrices matrices(const Camera& camera) {
+  return camera_matrices(camera, glm::dvec3(0.0), 1.0, 50.0);
+}
+
+// Seen from straight above, 2 m wide: a pixel of 100 is 2 cm, and one more is left on every side.
+TEST(LitPart, is_the_box_as_an_orthographic_camera_sees_it) {
+  const CameraMatrices camera = matrices(test::open_ground().cameras[0]);
+  const std::vector<Bounds> box{{{-0.5, 0.0, -0.3}, {0.5, 0.0, 0.3}}};
+  const VkRect2D part = seen_part(box, glm::dvec3(0.0), camera.clip_from_world, 100, 100);
+  EXPECT_EQ(part.extent.width, 52u);
+  EXPECT_EQ(part.extent.height, 32u);
+  EXPECT_EQ(part.offset.x, 24);
+  EXPECT_EQ(part.offset.y, 34);
+  EXPECT_EQ(seen_part({}, glm::dvec3(0.0), camera.clip_from_world, 100, 100).extent.width, 0u);
+}
+
+TEST(LitPart, holds_every_point_of_the_boxes_that_the_camera_sees) {
+  std::mt19937 generator(7);
+  const auto random = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(generator()) / 4294967295.0);
+  };
+  const glm::dvec3 origin(3.0, -2.0, 5.0);
+  std::size_t seen = 0;
+  for (int round = 0; round < 200; ++round) {
+    Camera camera;
+    camera.position = {random(-2, 2), random(-2, 2), random(-2, 2)};
+    camera.target = camera.position + glm::dvec3(random(-1, 1), random(-0.5, 0.5), 1.0);
+    camera.vertical_fov = random(20.0, 100.0);
+    const glm::dmat4 clip_from_world = matrices(camera).clip_from_world;
+    const glm::dvec3 low(random(-4, 3), random(-4, 3), random(-4, 3));
+    const Bounds box{low, low + glm::dvec3(random(0, 4), random(0, 4), random(0, 4))};
+    const std::vector<Bounds> placed{{box.low + origin, box.high + origin}};
+    const VkRect2D part = seen_part(placed, origin, clip_from_world, 640, 360);
+    for (int i = 0; i < 200; ++i) {
+      const glm::dvec3 point =
+          box.low + box.size() * glm::dvec3(random(0, 1), random(0, 1), random(0, 1));
+      const glm::dvec4 clip = clip_from_world * glm::dvec4(point, 1.0);
+      if (clip.w <= camera.near_plane || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w)
+        continue;
+      ++seen;
+      const double x = (0.5 + 0.5 * clip.x / clip.w) * 640 - part.offset.x;
+      const double y = (0.5 + 0.5 * clip.y / clip.w) * 360 - part.offset.y;
+      ASSERT_TRUE(x >= 0.0 && x <= part.extent.width && y >= 0.0 && y <= part.extent.height)
+          << round << ": " << x << ", " << y;
+    }
+  }
+  EXPECT_GT(seen, 3000u);
+}
+
+// The light hangs 4 m above the middle: its cone of 8 degrees is a circle of 0.56 m on the ground.
+TEST(LitPart, a_cone_is_shaded_whole_and_little_besides) {
+  Scene scene = test::open_ground();
+  scene.lights[0].position = {0, 4, 0};
+  scene.lights[0].direction = {0, -1, 0};
+  scene.lights[0].inner_angle = 6.0;
+  scene.lights[0].outer_angle = 8.0;
+  RenderRequest request;
+  request.scene = std::make_shared<const Scene>(scene);
+  request.technique = techniques::resolve("none").technique;
+  request.width = request.height = 200;
+  request.visibility = true;
+  const RenderResult result = Renderer({.device = "", .validation = true}).render(request);
+  const double judged =
+      std::accumulate(result.judged.pixels.begin(), result.judged.pixels.end(), 0.0);
+  const double radius = 100.0 * 4.0 * std::tan(8.0 * std::numbers::pi / 180.0);  // pixels
+  EXPECT_NEAR(judged, std::numbers::pi * radius * radius, 0.01 * judged);
+  for (const PassCost& pass : result.cost.passes) {
+    if (pass.name != "shade") continue;
+    // A square around the cone, which is wider below the ground; some drivers count whole blocks.
+    EXPECT_LT(pass.fragment_invocations, 200u * 200u / 2);
+    EXPECT_GE(static_cast<double>(pass.fragment_invocations), judged);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra
