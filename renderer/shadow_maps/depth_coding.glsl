@@ -78,4 +78,24 @@ float coding_error(vec4 range, float distance) {
   return 0.0;
 #endif
 }
+
+/// What is added to every depth that is kept, as glPolygonOffset does (Sindholt 2005, 2.2.8), in place
+/// of what its rounding needs. 0 for techniques that do more than compare depths.
+float granted_units() {
+#if defined(variant_depth_bits_16)
+  return parameter_bias_units / 65535.0;
+#elif defined(variant_depth_bits_32)
+  return parameter_bias_units * exp2(-24.0);
+#else
+  return 0.0;
+#endif
+}
+
+/// What an even depth is kept as.
+float kept_depth(vec4 range, float depth) { return min(coded_depth(range, depth) + granted_units(), 1.0); }
+
+/// What a strategy grants for the rounding of what is kept, m.
+float rounding_grant(vec4 range, float distance) {
+  return granted_units() > 0.0 ? 0.0 : coding_error(range, distance);
+}
 #endif

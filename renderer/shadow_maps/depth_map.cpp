@@ -88,6 +88,10 @@ std::vector<Parameter> comparing_map_parameters() {
   list.push_back(choice("depth_bits", "32", {"32", "16"},
                         "What a depth is kept in: a float of 32 bits, or one of 65,536 steps.")
                      .compiled());
+  list.push_back(real("bias_units", 0.0, {0.0, 1e6},
+                      "Steps of the map's numbers granted to every comparison, beside bias: of "
+                      "2^-24 as in a map of 24 bits, with 16 bits of 1/65535. 0: as many as "
+                      "rounding needs."));
   list.push_back(range_parameter(
       "near",
       "Distance along the light's axis at which the map's range begins, for a directional light "
@@ -324,7 +328,7 @@ void DepthMap::draw_layers(PrepareContext& context, const Views& views) {
   state.depth_test = state.depth_write = true;
   state.depth_compare = VK_COMPARE_OP_ALWAYS;
   const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
-  vulkan::Bindings bindings;
+  vulkan::Bindings bindings = context.frame_bindings;  // bias_units is no constant
   bindings.buffer("MapBlock", constants_);
   bindings.texture("first_depths", first_, vulkan::Sampling::nearest);
   bindings.texture("second_depths", second_, vulkan::Sampling::nearest);

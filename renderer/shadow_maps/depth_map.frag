@@ -43,8 +43,8 @@ void main() {
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
     bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
-  bias += map.texel.w * coding_error(view.range, distance);
+  bias += map.texel.w * rounding_grant(view.range, distance);
   float depth = clamp(even_depth_of(view.range, distance + bias), 0.0, 1.0);
-  gl_FragDepth = coded_depth(view.range, depth);
+  gl_FragDepth = kept_depth(view.range, depth);
 #endif
 }

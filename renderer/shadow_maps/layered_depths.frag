@@ -28,6 +28,6 @@ void main() {
       parameter_bias_strategy == bias_strategy_auto)
     depth = min(depth, first + greatest_offset(view, first) * view.range.z);
   float bias =
-      view.range.w + map.texel.w * coding_error(view.range, view.range.x + depth / view.range.z);
-  gl_FragDepth = coded_depth(view.range, clamp(depth + bias * view.range.z, 0.0, 1.0));
+      view.range.w + map.texel.w * rounding_grant(view.range, view.range.x + depth / view.range.z);
+  gl_FragDepth = kept_depth(view.range, clamp(depth + bias * view.range.z, 0.0, 1.0));
 }

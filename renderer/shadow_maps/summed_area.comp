@@ -29,7 +29,7 @@ TableSum value_of(int line, int place, int view) {
   return summed_area[entry(line, place, view)];
 #else
   float depth = texelFetch(shadow_map, ivec3(place, line, view), 0).r;
-  return table_value(vec2(depth, depth * depth));
+  return table_value(vec2(depth, depth * depth), table.size);
 #endif
 }
 

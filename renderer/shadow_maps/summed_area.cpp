@@ -16,11 +16,13 @@ std::vector<Parameter> summed_area_parameters() {
               "Widen the filter, pixel by pixel, to the texels that a pixel covers, at most " +
                   std::to_string(largest_kernel) + ".")
           .compiled());
-  list.push_back(choice("table", "int32", {"fp32", "distributed", "int32", "fp64"},
-                        "What sums of moments are kept in. fp32: single floats. distributed: two "
-                        "floats a moment, one for its first eight bits. int32: fixed point that "
-                        "may wrap. fp64: doubles, where the device has them.")
-                     .compiled());
+  list.push_back(
+      choice("table", "int32", {"fp32", "distributed", "int32", "int32-plain", "fp64"},
+             "What sums of moments are kept in. fp32: single floats. distributed: two "
+             "floats a moment, one for its first eight bits. int32: fixed point that "
+             "may wrap, so that only the widest filter must fit. int32-plain: fixed point of "
+             "which the whole map's sum fits. fp64: doubles, where the device has them.")
+          .compiled());
   return list;
 }
 
@@ -28,7 +30,7 @@ namespace {
 
 /// Bytes of a place of the table.
 VkDeviceSize entry_bytes(const std::string& type) {
-  return type == "fp32" || type == "int32" ? 8 : 16;
+  return type == "distributed" || type == "fp64" ? 16 : 8;
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ vec2 mean_moments(vec2 place, int view, int size, int width) {
     float weight = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
     ivec2 low = clamp(first + step, ivec2(0), ivec2(size));
     ivec2 high = clamp(first + step + width, ivec2(0), ivec2(size));
-    sum += weight * moments_of_sum(sum_of_rectangle(low, high, view, size));
+    sum += weight * moments_of_sum(sum_of_rectangle(low, high, view, size), size);
     area += weight * float((high.x - low.x) * (high.y - low.y));
   }
   return sum / max(area, 1e-6);

@@ -118,6 +118,59 @@ TEST(DepthCoding, casters_before_a_fixed_range_cast_and_those_behind_it_do_not) 
   }
 }
 
+/// Light on the ground `distance` below a lamp, where a plate hangs `height` over it.
+float lit_under(double height, double distance, const ParameterValues& parameters) {
+  Scene scene = empty_scene(0.5 * height, 0.1);
+  add_plate(scene, {-1, -1}, {1, 1}, 0.0);
+  add_plate(scene, {-0.5, -0.5}, {0.5, 0.5}, height);
+  scene.lights.push_back(lamp({0, distance, 0}, 0.1));
+  return draw(scene, "shadow-map-polygon-offset", parameters, 4).visibility.at(2, 2, 0);
+}
+
+TEST(PolygonOffset, grants_steps_of_24_bits_wherever_the_plate_hangs) {
+  // Sindholt 2005, 2.2.8: 4 units. A map of 1/z keeps (1/near - 1/z) / (1/near - 1/far), of which a
+  // unit is 2^-24; level plates have no slope. Floats just below 1 are a unit apart, and each of
+  // the two depths is rounded by one or so.
+  const double near = 0.1, far = 2000.0;
+  for (const double distance : {300.0, 500.0}) {
+    const auto height_of = [&](double units) {
+      return distance - 1.0 / (1.0 / distance + units * 0x1p-24 * (1.0 / near - 1.0 / far));
+    };
+    ParameterValues parameters{{"near", near}, {"far", far}};
+    EXPECT_EQ(lit_under(height_of(1.2), distance, parameters), 1.0f) << distance;
+    EXPECT_EQ(lit_under(height_of(6.8), distance, parameters), 0.0f) << distance;
+    parameters["bias_units"] = 400.0;
+    EXPECT_EQ(lit_under(height_of(396.0), distance, parameters), 1.0f) << distance;
+    EXPECT_EQ(lit_under(height_of(404.0), distance, parameters), 0.0f) << distance;
+  }
+}
+
+/// Dark share of a slope of 45 degrees `gap` below a parallel plate under a sun overhead, seen from
+/// between them over one texel of 2 m. Lengths are in texels.
+double dark_share_below_slope(double gap_texels) {
+  const double gap = 2.0 * gap_texels;
+  Scene scene = empty_scene(0.0, 2.0 * std::sqrt(2.0));
+  add_plate(scene, {-2, -2}, {2, 2}, 0.0);
+  add_plate(scene, {-2, -2}, {2, 2}, -gap, false);
+  for (Instance& plate : scene.instances) plate.world_from_object[0][1] = 1.0;
+  scene.cameras[0].target = {0.0, -gap, 0.0};
+  scene.cameras[0].position = scene.cameras[0].target + 0.1 * glm::dvec3(-1.0, 1.0, 0.0);
+  scene.lights.push_back(sun());
+  // Of 4 texels a quarter on each side is left free: 2 for the 4 m of the plates.
+  const RenderResult result =
+      draw(scene, "shadow-map-polygon-offset", {{"map_size", std::int64_t{4}}}, 100);
+  const auto& pixels = result.visibility.pixels;
+  return static_cast<double>(std::count(pixels.begin(), pixels.end(), 0.0f)) /
+         static_cast<double>(pixels.size());
+}
+
+TEST(PolygonOffset, grants_1_1_times_what_a_slope_spans_in_a_texel) {
+  // The map holds the plate's depth at the texel's middle and 1.1 texels; the slope is deeper by
+  // the gap and by anything within half a texel.
+  for (const double gap : {0.5, 0.7, 0.9, 1.1, 1.4, 1.7})
+    EXPECT_NEAR(dark_share_below_slope(gap), std::clamp(gap - 1.1 + 0.5, 0.0, 1.0), 0.02) << gap;
+}
+
 TEST(DepthCoding, a_range_that_ends_before_it_begins_is_refused) {
   try {
     lit_below_plate(3.0, 2.0, "linear");

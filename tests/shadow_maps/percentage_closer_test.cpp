@@ -80,6 +80,37 @@ TEST(PercentageCloser, the_sampler_interpolates_as_the_shader_does) {
   EXPECT_LE(worst, 1.0f / 255.0f);
 }
 
+/// Half of the ground under a roof whose edge lies on the border between two texels, under a sun
+/// overhead.
+Scene edge_between_texels() {
+  Scene scene = empty_scene(2.5, 0.5);
+  add_plate(scene, {-2, -2}, {2, 2}, 0.0);
+  add_plate(scene, {-2, -2}, {0, 2}, 3.0);
+  scene.lights.push_back(sun());
+  return scene;
+}
+
+TEST(PercentageCloser, reads_of_the_sampler_are_means_of_interpolated_comparisons) {
+  // Across the edge a bilinear comparison is a ramp one texel wide; the mean of n of them, a texel
+  // apart, is one that rises by 1/n over each of n texels: the 1D image of n x n reads.
+  for (const int n : {1, 2, 3}) {
+    const std::string preset =
+        n == 1 ? "pcf-hardware-bilinear"
+               : "pcf-hardware-bilinear-" + std::to_string(n) + "x" + std::to_string(n);
+    constexpr std::uint32_t size = 64;
+    // Of 64 texels n / 2 + 1 on each side are left free around the 4 m of the ground.
+    const double texel = 4.0 / (62.0 - n);
+    const RenderResult result =
+        draw(edge_between_texels(), preset, {{"map_size", std::int64_t{64}}}, size);
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const double place = (0.5 * (x + 0.5) / size - 0.25) / texel;  // texels from the edge
+      double lit = 0.0;
+      for (int i = 0; i < n; ++i) lit += std::clamp(place + i - 0.5 * (n - 1) + 0.5, 0.0, 1.0) / n;
+      EXPECT_NEAR(result.visibility.at(x, size / 2, 0), lit, 1.5 / 256) << preset << ", " << place;
+    }
+  }
+}
+
 /// Share of the picture in which a straight border is neither lit nor dark.
 double border_share(const ParameterValues& parameters) {
   const RenderResult result = draw(askew_edge(), "pcf", parameters, 200);

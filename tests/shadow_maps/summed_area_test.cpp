@@ -1,6 +1,9 @@
 // Summed-area variance shadow maps against counted comparisons, which their bound equals here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "drawing.h"
 #include "plates.h"
 #include "tests/kept_pictures/kept_pictures.h"
@@ -57,9 +60,64 @@ TEST(SummedArea, floats_break_down_as_the_map_grows_and_whole_numbers_do_not) {
   EXPECT_LT(table_error("savsm-int32", 2048, 5), 1e-3);
 }
 
+/// Ground at even depth `depth` of a map that begins and ends at small plates beside it, under a
+/// sun.
+Scene ground_at(double depth) {
+  // The range is a ten-thousandth wider than what it holds. The camera sees all of it: what shadows
+  // nothing and is not seen would be left out.
+  const double ground = 2.0 - 2.0 * 1.0001 * depth;
+  Scene scene = empty_scene(3.0, 4.2);
+  add_plate(scene, {-1.8, -1.8}, {1.8, 1.8}, ground);
+  add_plate(scene, {-2, -2}, {-1.9, -1.9}, 2.0);
+  add_plate(scene, {1.9, 1.9}, {2, 2}, 0.0);
+  scene.lights.push_back(sun());
+  return scene;
+}
+
+/// Chebyshev's bound for a receiver at the depth that the map holds everywhere, whose two moments
+/// were rounded to steps of 1 / units.
+double bound_of_rounded_moments(double depth, double units, double deviation) {
+  const double first = std::floor(units * depth + 0.5) / units;
+  const double second = std::floor(units * depth * depth + 0.5) / units;
+  const double variance = std::max(second - first * first, deviation * deviation);
+  const double behind = depth - first;
+  return behind <= 0.0 ? 1.0 : variance / (variance + behind * behind);
+}
+
+TEST(SummedArea, whole_numbers_that_never_wrap_keep_the_bits_that_the_maps_texels_leave) {
+  // Adorjan 2013, 2.2.1: log2(width * height) bits are lost to the sum over the whole map.
+  constexpr double deviation = 3e-4;
+  const auto drawn = [&](const char* preset, double depth, std::int64_t map_size) {
+    const RenderResult result = draw(ground_at(depth), preset,
+                                     {{"map_size", map_size},
+                                      {"kernel", std::int64_t{1}},
+                                      {"adaptive", false},
+                                      {"slope_scale", 0.0},
+                                      {"bleeding_reduction", 0.0},
+                                      {"minimum_deviation", deviation}},
+                                     4);
+    return double{result.visibility.at(2, 2, 0)};
+  };
+  // Of 32 bits 10 are left at 2048x2048, and 14 at 512x512.
+  const double coarse = std::floor(0x1p32 / 0x1p22 - 0.001), fine = 0x1p32 / 0x1p18 - 1.0;
+  for (const double depth : {0.057, 0.0718, 0.1754, 0.1939, 0.2605, 0.3678, 0.5, 0.7}) {
+    const double expected = bound_of_rounded_moments(depth, coarse, deviation);
+    EXPECT_EQ(expected < 0.6, depth < 0.4) << "depths chosen so that ten bits show at six of them";
+    EXPECT_NEAR(drawn("savsm-int32-plain", depth, 2048), expected, 0.05) << depth;
+    EXPECT_NEAR(drawn("savsm-int32-plain", depth, 512),
+                bound_of_rounded_moments(depth, fine, deviation), 0.02)
+        << depth;
+    // Sums that wrap lose no bits to the rest of the map.
+    EXPECT_NEAR(drawn("savsm-int32", depth, 2048), 1.0, 0.02) << depth;
+  }
+  // Nearly clean at 1024, where floats break down (4.2.1).
+  EXPECT_LT(table_error("savsm-int32-plain", 1024, 5), 0.3 * table_error("savsm-fp32", 1024, 5));
+}
+
 TEST(SummedArea, an_entry_takes_8_bytes_or_16) {
   for (const auto& [preset, bytes] : {std::pair{"savsm-fp32", 8u},
                                       {"savsm-int32", 8u},
+                                      {"savsm-int32-plain", 8u},
                                       {"savsm-distributed", 16u},
                                       {"savsm-fp64", 16u}}) {
     std::uint64_t found = 0;
