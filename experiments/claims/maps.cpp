@@ -103,12 +103,15 @@ Outcome q21(Laboratory& lab) {
     return mean_level(lab.draw("car", "none:gamma=" + gamma));
   };
   const double right = level("correct"), dark = level("input_only"), bright = level("output_only");
+  const double twice = level("textures_encoded_twice");
   Outcome outcome;
   outcome.number("correct", right);
   outcome.number("never encoded", dark);
   outcome.number("never decoded", bright);
+  outcome.number("textures not decoded", twice);
   outcome.part(dark < right);
   outcome.part(bright > right);
+  outcome.part(twice > right);
   outcome.note = "mean luma, 0 to 255";
   return outcome;
 }
@@ -190,7 +193,8 @@ std::vector<Claim> map_claims() {
       {"Q10", "S0 2.2.5", "PCSS's penumbrae are (dR - dB) w / dB wide",
        "the reference's width on half-plane within 15% of 1/3 m; PCSS's", q10},
       {"Q21", "S3 A.5", "uncorrected output is too dark, undecoded input too bright",
-       "mean luma of car below the correct one; above it", q21},
+       "mean luma of car below the correct one; above it; above it with only textures undecoded",
+       q21},
       {"Q24", "S2 6.1", "occluder textures have no acne on flat parts; round ones miss shadows",
        "aircraft: false_shadow no more than the map's; teapot: missing_shadow over twice the map's",
        q24},

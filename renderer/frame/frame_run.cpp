@@ -171,8 +171,7 @@ void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
   state_.recorder.begin(count_statistics);
   state_.recorder.pass("geometry", [&](vulkan::Commands& commands) {
     draw_geometry(commands, state_.pipelines, setup_.scene, targets_.geometry, bindings,
-                  glm::mat4(setup_.matrices.clip_from_world),
-                  gamma_treatment(setup_.parameters).decodes);
+                  glm::mat4(setup_.matrices.clip_from_world), gamma_treatment(setup_.parameters));
   });
   draw_lights(bindings, index, progress);
   resolve(bindings, false);

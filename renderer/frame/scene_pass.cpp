@@ -31,7 +31,7 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
-                   int decodes) {
+                   const GammaTreatment& gamma) {
   vulkan::RenderTargets targets;
   targets.width = buffer.width;
   targets.height = buffer.height;
@@ -53,9 +53,10 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
-  source.preamble = "#define DECODES " + std::to_string(decodes) + "\n";
+  source.preamble = "#define DECODES " + std::to_string(gamma.decodes) + "\n";
   vulkan::ProgramSource textured_source = source;
   textured_source.preamble += "#define TEXTURED\n";
+  if (gamma.textures_as_stored) textured_source.preamble += "#define TEXTURES_AS_STORED\n";
   state.vertex_input = vulkan::VertexInput::surface;
   state.depth_compare = VK_COMPARE_OP_GREATER;
   state.depth_write = true;

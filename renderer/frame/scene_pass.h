@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/frame/common_parameters.h"
 #include "renderer/frame/geometry_buffer.h"
 #include "renderer/frame/gpu_scene.h"
 #include "renderer/vulkan/commands.h"
@@ -11,10 +12,10 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
                                     std::uint32_t width, std::uint32_t height, bool stencil);
 
 /// Draws the scene into the geometry buffer, with ambient and emitted light and the sky as
-/// radiance. Colours are decoded from sRGB `decodes` times, 0 to 2.
+/// radiance. Colours are decoded from sRGB as `gamma` says.
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
-                   int decodes);
+                   const GammaTreatment& gamma);
 
 }  // namespace penumbra

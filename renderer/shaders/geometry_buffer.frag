@@ -31,7 +31,11 @@ void main() {
   MaterialData material = materials[draw.material];
   vec4 color = material.base_color * vertex_color;
 #ifdef TEXTURED
-  color *= texture(surface_texture, surface_uv);
+  vec4 texel = texture(surface_texture, surface_uv);
+#ifdef TEXTURES_AS_STORED
+  texel.rgb = srgb_from_linear(texel.rgb);
+#endif
+  color *= texel;
 #endif
   if (draw.has_holes != 0u && color.a < material.surface.z) discard;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "drawing.h"
+#include "scenes.h"
 
 namespace penumbra::tests {
 namespace {
@@ -36,6 +37,39 @@ TEST(Encoding, a_picture_without_it_is_too_dark_and_colours_taken_for_linear_are
   const double off = mean_of(picture_with("off"));
   EXPECT_GT(off, mean_of(picture_with("input_only")));
   EXPECT_LT(off, mean_of(picture_with("output_only")));
+}
+
+/// Ground whose left half has a texture of one colour and whose right half has none, both white by
+/// their material, under ambient light alone.
+Scene half_textured(std::uint8_t stored) {
+  Scene scene = empty_scene(1.0, 2.0);
+  add_plate(scene, {-2, -2}, {0, 2}, 0.0);
+  add_plate(scene, {0, -2}, {2, 2}, 0.0);
+  scene.materials[0].base_color = glm::vec3(1.0f);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].base_color = glm::vec3(0.25f);
+  scene.materials[0].texture = 0;
+  scene.textures.push_back({"grey", 1, 1, {stored, stored, stored, 255}});
+  scene.meshes[1].primitives[0].material = 1;
+  scene.lights.push_back(sun());
+  scene.lights[0].intensity = 0.0f;
+  scene.ambient = glm::vec3(1.0f);
+  return scene;
+}
+
+TEST(Encoding, textures_that_are_not_decoded_are_encoded_twice_and_too_bright_where_they_are) {
+  // Adorjan 2013, fig. A.7. What is stored as 100 is taken for 100/255 of linear light and encoded
+  // once more; a colour without texture stays as it is.
+  for (const int stored : {40, 100, 180}) {
+    const Scene scene = half_textured(static_cast<std::uint8_t>(stored));
+    const auto picture = [&](const char* gamma) {
+      return draw(scene, "none", {{"gamma", std::string(gamma)}}, 16).picture;
+    };
+    const Image8 right = picture("correct"), twice = picture("textures_encoded_twice");
+    EXPECT_NEAR(right.at(3, 8, 0), stored, 1) << stored;
+    EXPECT_NEAR(twice.at(3, 8, 0), srgb(stored), 1.0) << stored;
+    EXPECT_EQ(twice.at(12, 8, 0), right.at(12, 8, 0)) << stored;
+  }
 }
 
 TEST(Encoding, follows_the_standards_curve) {

@@ -140,6 +140,7 @@ TEST(CommonParameters, SayHowOftenColorsAreDecodedAndWhetherThePictureIsEncoded)
   EXPECT_EQ(treatment("input_only"), std::pair(1, false));
   EXPECT_EQ(treatment("output_only"), std::pair(0, true));
   EXPECT_EQ(treatment("input_twice"), std::pair(2, true));
+  EXPECT_EQ(treatment("textures_encoded_twice"), std::pair(1, true));
 }
 
 TEST(Parameters, HaveAnEffectOnlyWithTheChoiceTheyNeed) {
