@@ -16,7 +16,8 @@ std::vector<Parameter> blur_parameters() {
                         "Weights of that filter. box: equal. gauss: a bell of which two standard "
                         "deviations fit in.")
                      .compiled());
-  list.push_back(boolean("mips", true, "Read means over more texels where a pixel covers more."));
+  list.push_back(boolean(
+      "mips", true, "Read means over more texels where a pixel covers more than the blur does."));
   list.push_back(boolean(
       "anisotropic", false,
       "Read up to 16 means along the direction in which a pixel covers most, instead of one."));

@@ -5,12 +5,25 @@
 
 uniform sampler2DArray blurred_map;
 
+/// Variance of the blur's weights along one side, texels: of a bell that is cut off, at most this.
+const float blur_radius = float(parameter_blur);
+const float blur_variance = parameter_blur_filter == blur_filter_box
+                                ? blur_radius * (blur_radius + 1.0) / 3.0
+                                : 0.25 * blur_radius * blur_radius;
+
 /// Where and at which level a pixel reads the map.
 struct MapProbes {
   int count;    // 1, or up to 16 where parameter anisotropic asks for them
   vec2 along;   // texels from end to end of the row of probes
   float level;  // of the mip chain
 };
+
+/// Level whose texels, with what the blur already covers, are as wide as what is read: none while the
+/// blur alone is wider (Adorjan 2013, 3.3.3, whose level jumps where ours begins to rise). Widths add
+/// as variances do; a square of w texels has w^2 / 12.
+float level_after_blur(float width) {
+  return 0.5 * log2(max(width * width - 12.0 * blur_variance, 1.0));
+}
 
 /// Probes along the longer side of a pixel's footprint are placed here, not by an anisotropic sampler:
 /// lavapipe's takes one pixel's footprint for all four of a quad, which is garbage where they see
@@ -24,7 +37,7 @@ MapProbes map_probes(ShadowQuery query, MapPoint point) {
   float shorter = right_is_longer ? length(footprint.zw) : length(footprint.xy);
   float count = parameter_anisotropic == 1 ? clamp(ceil(longer / max(shorter, 1.0)), 1.0, 16.0) : 1.0;
   probes.count = int(count);
-  probes.level = parameter_mips == 1 ? log2(max(longer / count, 1.0)) : 0.0;
+  probes.level = parameter_mips == 1 ? level_after_blur(longer / count) : 0.0;
   return probes;
 }
 
@@ -38,6 +51,58 @@ vec4 read_blurred(ShadowQuery query, MapPoint point) {
     sum += share * textureLod(blurred_map, vec3(place / map.texel.x, float(point.view)), probes.level);
   }
   return sum;
+}
+
+/// How the depth of the receiver's own plane scatters along the axis within what the pixel reads.
+struct PlaneScatter {
+  float variance;  // m^2
+  float third;     // central moment, m^3
+  float most;      // m^2: the variance of a bell that is no narrower, wherever texels are mixed
+};
+
+/// What a level's texels along one side, each the mean of a row of the map's, and the mixture of the two
+/// nearest add to that: variance, third moment and most, in texels of the map.
+vec3 scatter_of_level(float place, float level) {
+  float size = exp2(level);
+  float share = fract(place / size - 0.5);
+  float within = (size * size - 1.0) / 12.0;
+  float mixed = share * (1.0 - share) * size * size;
+  return vec3(within + mixed, mixed * (1.0 - 2.0 * share) * size, within + 0.25 * size * size);
+}
+
+PlaneScatter scatter_of_plane(ShadowQuery query, MapPoint point) {
+  PlaneScatter scatter = PlaneScatter(0.0, 0.0, 0.0);
+  float bottom = point.plane_bottom.z;
+  if (bottom >= 0.0) return scatter;
+  // m for a step of a texel. A plane that light grazes is little lit, and not worth the shadows that so
+  // great a grant would lose: 10 texels deep for each texel across at most, as with strategy slope.
+  vec2 slope = (point.plane_top.xy - point.plane_bottom.xy * point.distance) / bottom;
+  slope *= min(1.0, 10.0 * point.texel_width / max(length(slope), 1e-30));
+  MapProbes probes = map_probes(query, point);
+  float level = min(probes.level, log2(map.texel.x));
+  float lower = floor(level);
+  for (int side = 0; side < 2; ++side) {
+    vec3 texels = mix(scatter_of_level(point.texel[side], lower),
+                      scatter_of_level(point.texel[side], lower + 1.0), level - lower);
+    float squared = slope[side] * slope[side];
+    scatter.variance += squared * (blur_variance + texels.x);
+    scatter.third += squared * slope[side] * texels.y;
+    scatter.most += squared * (blur_variance + texels.z);
+  }
+  // The row of probes of an anisotropic read.
+  float count = float(probes.count);
+  float along = dot(slope, probes.along);
+  float row = along * along * (1.0 - 1.0 / (count * count)) / 12.0;
+  scatter.variance += row;
+  scatter.most += row;
+  return scatter;
+}
+
+/// What the receiver is granted for it, m, with the strategies that know its plane.
+float granted_to_plane(float grant, float needed) {
+  bool knows_plane = parameter_bias_strategy == bias_strategy_receiver_plane ||
+                     parameter_bias_strategy == bias_strategy_auto;
+  return knows_plane ? max(grant, map.texel.w * needed) : grant;
 }
 
 /// Logarithm of the mean of what a map of logarithms encodes, interpolated between four texels; no

@@ -102,14 +102,18 @@ std::vector<Parameter> comparing_map_parameters() {
   return list;
 }
 
-Diagnostic map_diagnostic() {
-  return {"map", "The depth map's first view as the light sees it: near is dark, far is bright."};
-}
-
-Diagnostic views_diagnostic() {
-  return {"views",
-          "Which view of the map tells of each pixel, by colour: red, yellow, green, cyan, blue, "
-          "magenta, orange, grey; mixed where two do, dark in shadow, black where none does."};
+std::vector<Diagnostic> map_diagnostics(const std::vector<Diagnostic>& own) {
+  std::vector<Diagnostic> list = {
+      {"map", "The depth map's first view as the light sees it: near is dark, far is bright."},
+      {"views",
+       "Which view of the map tells of each pixel, by colour: red, yellow, green, cyan, blue, "
+       "magenta, orange, grey; mixed where two do, dark in shadow, black where none does."},
+      {"texels-per-pixel",
+       "Texels of the map along the longer side of what a pixel covers, by colour: green 1, yellow "
+       "1/4, red 1/16 and fewer (the map is coarser than the picture), cyan 4, blue 16 and more; "
+       "black where no view tells."}};
+  list.insert(list.end(), own.begin(), own.end());
+  return list;
 }
 
 namespace {

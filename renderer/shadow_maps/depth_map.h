@@ -13,11 +13,9 @@ std::vector<Parameter> map_parameters();
 /// Those and how depth is kept, for techniques that only compare it: depth, depth_bits, near, far.
 std::vector<Parameter> comparing_map_parameters();
 
-/// The picture `map` of every program that includes renderer/shadow_maps/diagnostics.glsl.
-Diagnostic map_diagnostic();
-
-/// The picture `views`, likewise.
-Diagnostic views_diagnostic();
+/// Pictures of every program that includes renderer/shadow_maps/diagnostics.glsl, and those of
+/// one's own.
+std::vector<Diagnostic> map_diagnostics(const std::vector<Diagnostic>& own = {});
 
 /// Views of the light's map, each a layer of its images.
 std::uint32_t view_count(const TechniqueInput& input);

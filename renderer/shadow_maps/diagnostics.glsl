@@ -1,7 +1,7 @@
 // Pictures that every map technique offers.
 #ifndef PENUMBRA_MAP_DIAGNOSTICS_GLSL
 #define PENUMBRA_MAP_DIAGNOSTICS_GLSL
-#include "renderer/shadow_maps/depth_map.glsl"
+#include "renderer/shadow_maps/footprint.glsl"
 
 // The first view as a grey picture: near is dark.
 vec4 draw_diagnostic_map(ShadowQuery query, vec2 picture) {
@@ -25,5 +25,15 @@ vec4 draw_diagnostic_views(ShadowQuery query, vec2 picture) {
   vec3 color = color_of_view(choice.first);
   if (choice.share > 0.0) color = mix(color, color_of_view(choice.second), choice.share);
   return vec4((0.35 + 0.65 * calculate_shadow(query)) * color, 1.0);
+}
+
+// Texels that a pixel covers along its longer side, by their logarithm: red, yellow, green at one, cyan,
+// blue.
+vec4 draw_diagnostic_texels_per_pixel(ShadowQuery query, vec2 picture) {
+  int view = query.point < 0 ? -1 : choose_views(query.position).first;
+  if (view < 0) return vec4(0.0, 0.0, 0.0, 1.0);
+  float width = footprint_width(map_footprint(query, locate(query, view, 0.0)));
+  float fours = clamp(0.5 * log2(max(width, 1e-6)), -2.0, 2.0);
+  return vec4(clamp(-fours, 0.0, 1.0), clamp(2.0 - abs(fours), 0.0, 1.0), clamp(fours, 0.0, 1.0), 1.0);
 }
 #endif

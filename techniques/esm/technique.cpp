@@ -89,12 +89,10 @@ TechniqueDescription describe_esm() {
   description.family = "map";
   description.source = "Adorjan 2013, 2.2.2 and 3.3.2; Annen et al. 2008; Salvi 2008";
   description.parameters = esm_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
-      {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
-      shadow_maps::mip_level_diagnostic()};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"moments", "Logarithm of what is stored, over c; magenta where it overflowed."},
+       {"fallback", "Red where 2x2 comparisons take over, over the visibility in grey."},
+       shadow_maps::mip_level_diagnostic()});
   description.create = create_technique<ExponentialShadowMap>;
   return description;
 }

@@ -20,7 +20,15 @@ float filter_view(ShadowQuery query, int view) {
   float depth = depth_of_distance(point, point.distance - point.grant);
   float deviation = parameter_minimum_deviation;
   float lit = positive_bound(moments.xy, depth, deviation);
-  if (parameter_components == components_4) lit = min(lit, negative_bound(moments.zw, depth, deviation));
+  if (parameter_components == components_4) {
+    // The mean of -exp(-c z) over a plane lies before its value at the middle (Jensen): by no more than
+    // c / 2 variances of a bell around all of it, and not before its nearest point, sqrt(6) deviations
+    // of a square.
+    float variance = scatter_of_plane(query, point).most * point.range.z * point.range.z;
+    float needed = min(0.5 * parameter_c_negative * variance, sqrt(6.0 * variance));
+    float grant = granted_to_plane(point.grant, needed / point.range.z);
+    lit = min(lit, negative_bound(moments.zw, depth_of_distance(point, point.distance - grant), deviation));
+  }
   return reduce_bleeding(lit);
 }
 

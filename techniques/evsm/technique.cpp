@@ -61,11 +61,9 @@ TechniqueDescription describe_evsm() {
   description.family = "map";
   description.source = "Adorjan 2013, 2.2.3; Lauritzen and McCool 2008";
   description.parameters = evsm_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
-      shadow_maps::mip_level_diagnostic()};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"moments", "Mean depth by either warp, red and green; magenta where a moment overflowed."},
+       shadow_maps::mip_level_diagnostic()});
   description.create = create_technique<ExponentialVarianceShadowMap>;
   return description;
 }

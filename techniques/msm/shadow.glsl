@@ -38,10 +38,20 @@ float least_share_before(vec4 m, float z) {
   return 1.0 - weight_of(z, low, high, m);
 }
 
+// How far before the middle of a plane, m, four moments allow none of it: at the nearer of the two
+// depths that have its first three moments, the roots of x^2 - third / variance x - variance. A stretch
+// that is seen from its middle may hide 5/18 before it.
+float before_plane(PlaneScatter scatter) {
+  if (scatter.variance <= 0.0) return 0.0;
+  float half_sum = 0.5 * scatter.third / scatter.variance;
+  return sqrt(half_sum * half_sum + scatter.variance) - half_sum;
+}
+
 float filter_view(ShadowQuery query, int view) {
   MapPoint point = locate(query, view, float(parameter_blur));
   vec4 moments = valid_moments(moments_of_texel(read_blurred(query, point)));
-  float depth = 2.0 * depth_of_distance(point, point.distance - point.grant) - 1.0;
+  float grant = granted_to_plane(point.grant, before_plane(scatter_of_plane(query, point)));
+  float depth = 2.0 * depth_of_distance(point, point.distance - grant) - 1.0;
   float lit = clamp(1.0 - least_share_before(moments, depth), 0.0, 1.0);
   // The bias of moments leaves a little shadow on what is lit.
   const float nearly_lit = 0.98;

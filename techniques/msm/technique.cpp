@@ -49,11 +49,9 @@ TechniqueDescription describe_msm() {
   description.family = "map";
   description.source = "Peters and Klein 2015, four moments, Hamburger problem";
   description.parameters = msm_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"moments", "Mean depth in red and ten times the deviation from it in green."},
-      shadow_maps::mip_level_diagnostic()};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"moments", "Mean depth in red and ten times the deviation from it in green."},
+       shadow_maps::mip_level_diagnostic()});
   description.create = create_technique<MomentShadowMap>;
   return description;
 }

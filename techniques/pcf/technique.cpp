@@ -61,7 +61,7 @@ TechniqueDescription describe_pcf() {
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.4; Reeves, Salesin and Cook 1987";
   description.parameters = pcf_parameters();
-  description.diagnostics = {shadow_maps::map_diagnostic(), shadow_maps::views_diagnostic()};
+  description.diagnostics = shadow_maps::map_diagnostics();
   description.create = create_technique<PercentageCloserFilter>;
   return description;
 }

@@ -63,11 +63,9 @@ TechniqueDescription describe_pcss() {
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.5; Fernando 2005";
   description.parameters = pcss_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
-      {"penumbra-width", "Width of the filter; white is an eighth of the map."}};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"blocker-depth", "Depth of the blocker that the search found; black where there is none."},
+       {"penumbra-width", "Width of the filter; white is an eighth of the map."}});
   description.create = create_technique<PercentageCloserSoftShadows>;
   return description;
 }

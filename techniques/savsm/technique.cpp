@@ -47,13 +47,12 @@ TechniqueDescription describe_savsm() {
   description.family = "map";
   description.source = "Adorjan 2013, 2.2.1, 3.3.4 and 3.3.5; Lauritzen 2007";
   description.parameters = savsm_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"moments",
-       "Mean depth by the table: of one texel red, of the kernel green; the map's own depth blue."},
-      {"filter-width",
-       "By their logarithms: texels that a pixel covers red, width of the filter green."}};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"moments",
+        "Mean depth by the table: of one texel red, of the kernel green; the map's own depth "
+        "blue."},
+       {"filter-width",
+        "By their logarithms: texels that a pixel covers red, width of the filter green."}});
   description.create = create_technique<SummedAreaVarianceShadowMap>;
   return description;
 }

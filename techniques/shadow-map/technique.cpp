@@ -14,7 +14,7 @@ TechniqueDescription describe_shadow_map() {
           .family = "map",
           .source = "van Sambeek 2007, 2.2.1-2.2.3 and 3.2.4; Williams 1978",
           .parameters = shadow_maps::comparing_map_parameters(),
-          .diagnostics = {shadow_maps::map_diagnostic(), shadow_maps::views_diagnostic()},
+          .diagnostics = shadow_maps::map_diagnostics(),
           .create = create_technique<ShadowMap>};
 }
 

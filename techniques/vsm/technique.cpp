@@ -44,11 +44,9 @@ TechniqueDescription describe_vsm() {
   description.family = "map";
   description.source = "van Sambeek 2007, 2.2.6; Donnelly and Lauritzen 2006";
   description.parameters = vsm_parameters();
-  description.diagnostics = {
-      shadow_maps::map_diagnostic(),
-      shadow_maps::views_diagnostic(),
-      {"moments", "Mean depth in red and ten times the deviation from it in green."},
-      shadow_maps::mip_level_diagnostic()};
+  description.diagnostics = shadow_maps::map_diagnostics(
+      {{"moments", "Mean depth in red and ten times the deviation from it in green."},
+       shadow_maps::mip_level_diagnostic()});
   description.create = create_technique<VarianceShadowMap>;
   return description;
 }

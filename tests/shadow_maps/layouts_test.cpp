@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "avenue.h"
 #include "drawing.h"
 #include "hard_truth.h"
 #include "renderer/error.h"
 #include "renderer/metrics/metrics.h"
-#include "renderer/shadow_maps/layout.h"
 #include "scenes.h"
 #include "techniques/layout_matrix.h"
 #include "tests/kept_pictures/kept_pictures.h"
@@ -19,42 +19,6 @@ namespace penumbra::tests {
 namespace {
 
 constexpr std::uint32_t picture = 128;  // pixels a side
-
-/// Ground of 80 m x 130 m that a person looks along.
-Scene plain() {
-  Scene scene = empty_scene(2.0, 1.0);
-  add_plate(scene, {-40, -120}, {40, 10}, 0.0);
-  Camera& camera = scene.cameras[0];
-  camera.position = {0, 2, 5};
-  camera.target = {0, 1, -20};
-  camera.up = {0, 1, 0};
-  camera.projection = Projection::perspective;
-  camera.vertical_fov = 50.0;
-  camera.near_plane = 0.1;
-  return scene;
-}
-
-Light slanted_sun(const glm::dvec3& direction) {
-  Light light = sun();
-  light.direction = glm::normalize(direction);
-  return light;
-}
-
-/// Posts along both sides of the way, under a low sun.
-Scene avenue() {
-  Scene scene = plain();
-  for (const double z : {-1.0, -4.0, -8.0, -14.0, -22.0, -34.0, -50.0, -75.0})
-    for (const double x : {-2.5, 2.0})
-      add_box(scene, {x - 0.5, 0.001, z - 0.5}, {x + 0.5, 4.0, z + 0.5});
-  scene.lights.push_back(slanted_sun({0.7, -1.0, -0.3}));
-  return scene;
-}
-
-std::vector<std::string> layout_ids() {
-  std::vector<std::string> ids;
-  for (const shadow_maps::Layout& layout : shadow_maps::layouts()) ids.push_back(layout.id);
-  return ids;
-}
 
 /// All techniques with a map, plain settings.
 std::vector<std::string> map_techniques() {
@@ -164,9 +128,8 @@ TEST(Layouts, open_ground_is_lit_across_all_borders) {
   Scene scene = plain();
   scene.lights.push_back(slanted_sun({0.7, -1.0, -0.3}));
   for (const std::string& technique : map_techniques()) {
-    // Bounds of moments and exponentials are not sharp where a texel spans metres of depth,
-    // whatever the layout: far away they darken what is lit, msm by up to 0.29 on every layout and
-    // by a hundredth on average.
+    // Bounds of moments and exponentials are not sharp where a texel spans metres of depth. Their
+    // filters know how the receiver's plane scatters there, but for what interpolation adds.
     const bool compares = techniques::resolve(technique).parameters.contains("depth");
     for (const std::string& layout : layout_ids()) {
       SCOPED_TRACE(technique + " on " + layout);
@@ -181,8 +144,8 @@ TEST(Layouts, open_ground_is_lit_across_all_borders) {
         judged += 1.0;
       }
       EXPECT_GT(judged, 4000.0);
-      EXPECT_GT(sum / judged, compares ? 0.9999 : 0.985);
-      EXPECT_GT(darkest, compares ? 0.9999f : 0.7f);
+      EXPECT_GT(sum / judged, compares ? 0.9999 : 0.9995);
+      EXPECT_GT(darkest, compares ? 0.9999f : 0.97f);
     }
   }
 }

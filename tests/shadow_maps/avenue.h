@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "renderer/shadow_maps/layout.h"
+#include "scenes.h"
+
+/// What a person sees who looks along a plain, under a sun: scenes that layouts are judged by.
+namespace penumbra::tests {
+
+/// Ground of 80 m x 130 m that a person looks along.
+inline Scene plain() {
+  Scene scene = empty_scene(2.0, 1.0);
+  add_plate(scene, {-40, -120}, {40, 10}, 0.0);
+  Camera& camera = scene.cameras[0];
+  camera.position = {0, 2, 5};
+  camera.target = {0, 1, -20};
+  camera.up = {0, 1, 0};
+  camera.projection = Projection::perspective;
+  camera.vertical_fov = 50.0;
+  camera.near_plane = 0.1;
+  return scene;
+}
+
+inline Light slanted_sun(const glm::dvec3& direction) {
+  Light light = sun();
+  light.direction = glm::normalize(direction);
+  return light;
+}
+
+/// Posts along both sides of the way, under a low sun.
+inline Scene avenue() {
+  Scene scene = plain();
+  for (const double z : {-1.0, -4.0, -8.0, -14.0, -22.0, -34.0, -50.0, -75.0})
+    for (const double x : {-2.5, 2.0})
+      add_box(scene, {x - 0.5, 0.001, z - 0.5}, {x + 0.5, 4.0, z + 0.5});
+  scene.lights.push_back(slanted_sun({0.7, -1.0, -0.3}));
+  return scene;
+}
+
+inline std::vector<std::string> layout_ids() {
+  std::vector<std::string> ids;
+  for (const shadow_maps::Layout& layout : shadow_maps::layouts()) ids.push_back(layout.id);
+  return ids;
+}
+
+/// Layouts that serve a sun.
+inline std::vector<std::string> sun_layouts() {
+  std::vector<std::string> ids;
+  for (const shadow_maps::Layout& layout : shadow_maps::layouts())
+    if (layout.refusal(LightKind::directional).empty()) ids.push_back(layout.id);
+  return ids;
+}
+
+}  // namespace penumbra::tests
