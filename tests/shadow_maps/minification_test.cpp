@@ -61,8 +61,8 @@ TEST(MipLevel, is_what_the_blur_leaves_to_do) {
         const double width = std::exp2(level_of(sharp, x, y));
         if (width > 7.9) continue;  // the colours end at 8
         const double expected = 0.5 * std::log2(std::max(width * width - covered, 1.0));
-        // A step of the colours is a 255th of a level, and a view is wider by what is read beyond its
-        // border, a hundredth; the difference of squares enlarges both.
+        // A step of the colours is a 255th of a level, and a view is wider by what is read beyond
+        // its border, a hundredth; the difference of squares enlarges both.
         const double blurring = std::max(width * width - covered, 1.0);
         EXPECT_NEAR(level_of(blurred, x, y), expected, 0.02 + 0.015 * width * width / blurring)
             << x << ", " << y;
