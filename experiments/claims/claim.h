@@ -60,6 +60,7 @@ std::vector<Claim> survey_scene_claims();
 std::vector<Claim> volume_claims();
 std::vector<Claim> filter_claims();
 std::vector<Claim> map_claims();
+std::vector<Claim> layout_claims();
 std::vector<Claim> cost_claims();
 std::vector<Claim> waiting_claims();
 

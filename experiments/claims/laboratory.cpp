@@ -59,16 +59,32 @@ double Laboratory::value(const char* key, const std::string& scene, const std::s
 RenderResult Laboratory::draw(const std::string& scene, const std::string& technique,
                               std::uint32_t size, std::uint32_t light_samples) {
   if (before) before(scene + " " + technique);
+  RenderRequest request = request_of(engine().scene(scene), technique, size);
+  if (light_samples != 0) request.light_samples = light_samples;
+  return engine().renderer().render(request);
+}
+
+RenderResult Laboratory::draw(const std::shared_ptr<const Scene>& scene, const std::string& label,
+                              const std::string& technique, std::uint32_t size,
+                              const std::string& diagnostic) {
+  if (before) before(label + " " + technique);
+  RenderRequest request = request_of(scene, technique, size);
+  request.diagnostic = diagnostic;
+  return engine().renderer().render(request);
+}
+
+RenderRequest Laboratory::request_of(const std::shared_ptr<const Scene>& scene,
+                                     const std::string& technique, std::uint32_t size) const {
   const NamedTechnique named = read_technique(technique);
   const auto resolved = techniques::resolve(named.id, named.parameters);
   RenderRequest request;
-  request.scene = engine().scene(scene);
+  request.scene = scene;
   request.technique = resolved.technique;
   request.parameters = resolved.parameters;
   request.width = request.height = size == 0 ? scale_.size : size;
-  request.light_samples = light_samples == 0 ? scale_.light_samples : light_samples;
+  request.light_samples = scale_.light_samples;
   request.visibility = true;
-  return engine().renderer().render(request);
+  return request;
 }
 
 double mean_visibility(const RenderResult& drawn) {

@@ -38,6 +38,11 @@ class Laboratory {
   RenderResult draw(const std::string& scene, const std::string& technique, std::uint32_t size = 0,
                     std::uint32_t light_samples = 0);
 
+  /// The same of a scene made here; `label` tells what is drawn.
+  RenderResult draw(const std::shared_ptr<const Scene>& scene, const std::string& label,
+                    const std::string& technique, std::uint32_t size = 0,
+                    const std::string& diagnostic = {});
+
   const Scale& scale() const { return scale_; }
   Engine& engine();
   bool has_engine() const { return engine_ != nullptr; }
@@ -47,6 +52,9 @@ class Laboratory {
   std::function<void(const std::string&)> before;
 
  private:
+  RenderRequest request_of(const std::shared_ptr<const Scene>& scene, const std::string& technique,
+                           std::uint32_t size) const;
+
   EngineOptions options_;
   Scale scale_;
   std::unique_ptr<Engine> engine_;

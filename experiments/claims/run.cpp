@@ -79,7 +79,7 @@ const std::vector<Claim>& all() {
     std::vector<Claim> claims;
     for (const auto& family :
          {published_claims(), number_claims(), survey_scene_claims(), volume_claims(),
-          filter_claims(), map_claims(), cost_claims(), waiting_claims()})
+          filter_claims(), map_claims(), layout_claims(), cost_claims(), waiting_claims()})
       claims.insert(claims.end(), family.begin(), family.end());
     return claims;
   }();

@@ -19,7 +19,7 @@ Claim of_layouts(const char* id, const char* source, const char* statement, cons
 
 std::vector<Claim> waiting_claims() {
   const Names tiles{"iasm"}, tiles_and_cascades{"iasm", "cascaded"};
-  const Names late{"iasm-delayed", "cascaded"}, warped{"perspective"};
+  const Names late{"iasm-delayed", "cascaded"};
   return {
       of_people("P01", "S0 5.3", "soft borders rank as more real than hard ones",
                 "from a study that holds both"),
@@ -31,17 +31,8 @@ std::vector<Claim> waiting_claims() {
                  "errors to exact hard shadows; bytes exactly", tiles_and_cascades),
       of_layouts("Q23", "S1 fig. 4.4", "IASM shows borders of tiles near the camera, CSM none",
                  "worst against median error over the camera's turn", tiles_and_cascades),
-      of_layouts("Q26", "S4 fig. 29, 32", "perspective maps win near the camera and lose far away",
-                 "error by depth", warped),
-      of_layouts("Q33", "S4", "perspective maps are sometimes much worse than plain ones",
-                 "worst case over cameras and lights", warped),
       of_layouts("Q44", "S1 5", "freely chosen sizes of tiles bring acne and flicker",
                  "change between frames, and false_shadow", tiles),
-      of_layouts("Q45", "S1 2.2, 2.3", "warping gains most with light across the view",
-                 "error over that of the plain map, angle by angle",
-                 {"perspective", "light-space-perspective", "trapezoidal", "cascaded"}),
-      of_layouts("Q47", "S4 fig. 26, 27", "without a virtual camera PSM misses casters behind it",
-                 "missing_shadow with and without", warped),
       of_layouts("Q48", "S1 fig. 4.5", "tight ranges of tiles beat CSM close to the camera",
                  "error near the camera at 16 bits", tiles_and_cascades),
       of_layouts("C09", "S1 table 4.1", "IASM is cheaper than CSM on trees, dearer on one mesh",
