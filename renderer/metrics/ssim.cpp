@@ -54,7 +54,7 @@ double index_of(double a, double b, double aa, double bb, double ab) {
 
 /// Sums of the index over each row of places of the window, from the first to before the last.
 template <class T>
-void sum_rows(const Image<T>& picture, const Image<T>& reference, std::uint32_t first,
+void sum_similarities(const Image<T>& picture, const Image<T>& reference, std::uint32_t first,
               std::uint32_t last, std::vector<double>& sums) {
   const std::array<double, window> kernel = gaussian();
   const std::size_t width = picture.width - window + 1;
@@ -92,7 +92,7 @@ double ssim_of(const Image<T>& picture, const Image<T>& reference) {
   const auto rows = static_cast<std::uint32_t>(picture.height - window + 1);
   std::vector<double> sums(rows);
   for_bands(rows, [&](std::uint32_t first, std::uint32_t last) {
-    sum_rows(picture, reference, first, last, sums);
+    sum_similarities(picture, reference, first, last, sums);
   });
   return std::accumulate(sums.begin(), sums.end(), 0.0) /
          (static_cast<double>(picture.width - window + 1) * rows);
