@@ -55,10 +55,10 @@ TEST(RequestFields, say_what_they_are_and_show_a_value) {
     EXPECT_TRUE(names.insert(field.name).second) << field.name << " is declared twice";
     EXPECT_NE(field.meaning, "") << field.name;
     EXPECT_EQ(read(field, field.example), field.example) << field.name;
-    if (!field.default_value.is_null())
-      EXPECT_EQ(read(field, field.default_value), field.default_value) << field.name;
-    if (!field.in_studies.is_null())
-      EXPECT_EQ(read(field, field.in_studies), field.in_studies) << field.name;
+    for (const auto& value : {field.default_value, field.in_studies}) {
+      if (value.is_null()) continue;
+      EXPECT_EQ(read(field, value), value) << field.name;
+    }
   }
 }
 
