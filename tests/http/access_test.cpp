@@ -116,6 +116,7 @@ const std::set<std::string> participants_calls{
     "PUT /api/v1/participants/{token}/screen",
     "PUT /api/v1/participants/{token}/pages/{page}",
     "GET /api/v1/participants/{token}/pages/{page}/pictures/{slot}",
+    "GET /api/v1/participants/{token}/pages/{page}/pictures/{slot}/{frame}",
     "POST /api/v1/participants/{token}/complete",
     "DELETE /api/v1/withdrawals/{code}",
     "GET /lab",  // asks for the token itself
