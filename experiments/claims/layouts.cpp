@@ -166,8 +166,8 @@ Outcome q42(Laboratory& lab) {
   std::vector<double> shares;
   for (const int blur : {0, 1, 3}) {
     const RenderResult drawn =
-        lab.draw(tower, "tower", "vsm:map_size=2048:blur_filter=box:blur=" + std::to_string(blur), 0,
-                 "mip-level");
+        lab.draw(tower, "tower", "vsm:map_size=2048:blur_filter=box:blur=" + std::to_string(blur),
+                 0, "mip-level");
     std::size_t finest = 0, judged = 0;
     for (std::uint32_t y = 0; y < drawn.diagnostic.height; ++y)
       for (std::uint32_t x = 0; x < drawn.diagnostic.width; ++x) {

@@ -55,7 +55,7 @@ double index_of(double a, double b, double aa, double bb, double ab) {
 /// Sums of the index over each row of places of the window, from the first to before the last.
 template <class T>
 void sum_similarities(const Image<T>& picture, const Image<T>& reference, std::uint32_t first,
-              std::uint32_t last, std::vector<double>& sums) {
+                      std::uint32_t last, std::vector<double>& sums) {
   const std::array<double, window> kernel = gaussian();
   const std::size_t width = picture.width - window + 1;
   const Columns all{0, width};
