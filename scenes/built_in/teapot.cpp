@@ -66,6 +66,7 @@ std::vector<glm::dvec3> handle_path() {
 }
 
 constexpr double handle_radius = 0.095;
+constexpr double waist_radius = 1.12, waist_height = 0.78;
 constexpr double knob_radius = 0.12, knob_height = 1.78;
 constexpr double spout_tip_radius = 0.10;
 
@@ -74,7 +75,7 @@ void add_pot(Mesh& mesh, const PotLooks& looks) {
            lathe(profile({{0.62, 0.02},
                           {0.70, 0.08},
                           {1.02, 0.42},
-                          {1.12, 0.78},
+                          {waist_radius, waist_height},
                           {1.00, 1.14},
                           {0.74, 1.38},
                           {0.66, 1.44}},
@@ -119,15 +120,19 @@ ShadowPlane pot_plane(const std::string& name, const glm::dvec3& center, const g
 
 /// Coleman's planes (2006, 5): three through the top, of which two stand upright and share a
 /// texture; along the spout its profile from the side and from above, and a cap at its tip; and
-/// five rectangles end to end along the handle, dark all over.
+/// five rectangles end to end along the handle, dark all over. His pot shadowed itself alone; this
+/// one stands on a table, for which its body has three more, through its middle and its waist.
 void add_shadow_planes_of_pot(Scene& scene, const PotLooks& looks, const glm::dmat4& pot) {
   const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0);
-  Mesh top, spout, disc_mesh;
+  Mesh body, top, spout, disc_mesh;
+  add_pot(body, looks);
   add_top(top, looks);
   add_spout(spout, looks);
   add_part(disc_mesh, cylinder(1.0, 1.0, 0.1, 48), looks.rim);
   const std::vector<glm::dvec3> along = spout_path(), handle = handle_path();
   const glm::dvec3 root = along.front(), tip = along.back(), end = tip - along[along.size() - 2];
+  // A little inside the glaze, which coarse texels would darken.
+  const glm::dvec2 within_waist(2.2 * 0.985 * waist_radius);
   const glm::dvec2 across_knob(2.2 * knob_radius), across_tip(2.2 * spout_tip_radius);
   const glm::dvec3 middle = 0.5 * (root + tip);
   const double reach = glm::length(tip - root) + 0.5;
@@ -137,10 +142,15 @@ void add_shadow_planes_of_pot(Scene& scene, const PotLooks& looks, const glm::dm
       pot_plane("knob", {0.0, knob_height, 0.0}, x, -z, across_knob, "disc"),
       pot_plane("spout, from the side", {1.35, 1.0, 0.0}, x, y, {1.3, 1.5}, "spout from the side"),
       pot_plane("spout, from above", middle, tip - root, z, {reach, 0.6}, "spout from above"),
-      pot_plane("spout's tip", tip, z, glm::cross(z, end), across_tip, "disc")};
+      pot_plane("spout's tip", tip, z, glm::cross(z, end), across_tip, "disc"),
+      pot_plane("body, from the front", {0.0, 0.74, 0.0}, x, y, {2.4, 1.6}, "body"),
+      pot_plane("body, from the side", {0.0, 0.74, 0.0}, z, y, {2.4, 1.6}, "body"),
+      pot_plane("body's waist", {0.0, waist_height, 0.0}, x, -z, within_waist, "waist")};
   const ShadowPlane unit = pot_plane("", {}, x, -z, glm::dvec2(2.2), "disc");
   scene.textures.push_back(silhouette_texture("top", top, planes[0], 256));
   scene.textures.push_back(silhouette_texture("disc", disc_mesh, unit, 64));
+  scene.textures.push_back(silhouette_texture("body", body, planes[6], 512));
+  scene.textures.push_back(silhouette_texture("waist", disc_mesh, unit, 512));
   scene.textures.push_back(silhouette_texture("spout from the side", spout, planes[3], 256));
   scene.textures.push_back(silhouette_texture("spout from above", spout, planes[4], 256));
   scene.textures.push_back({"dark", 1, 1, {0, 0, 0, 255}});
