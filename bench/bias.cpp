@@ -245,8 +245,7 @@ int main(int count, char** values) {
       [&](CLI::App& app) {
         app.add_option("--part", options.part, "What to print")
             ->check(CLI::IsMember({"best", "sweep", "depth"}));
-        app.add_option("--size", options.size, "Pixels, width and height")
-            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_size_option(app, options.size);
         app.add_option("--scenes", options.scenes, "Built-in scenes")->delimiter(',');
         app.add_option("--filters", options.filters, "hard, pcf-3, pcf-9, or techniques")
             ->delimiter(',');

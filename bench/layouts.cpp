@@ -32,14 +32,13 @@ struct Subject {
 /// Every layout that serves a sun, and a single view focused on what is seen.
 std::vector<Subject> subjects() {
   std::vector<Subject> list;
-  for (const shadow_maps::Layout& layout : shadow_maps::layouts()) {
-    if (!layout.refusal(LightKind::directional).empty()) continue;
-    ParameterValues values{{"layout", layout.id}, {"map_size", std::int64_t{512}}};
-    if (layout.id == "single") list.push_back({"single, focus scene", values});
-    if (layout.id == "single") values["focus"] = std::string("seen");
+  for (const std::string& layout : shadow_maps::layouts_for(LightKind::directional)) {
+    ParameterValues values{{"layout", layout}, {"map_size", std::int64_t{512}}};
+    if (layout == "single") list.push_back({"single, focus scene", values});
+    if (layout == "single") values["focus"] = std::string("seen");
     // Four cascades are as many bytes as one map of twice the width.
-    if (layout.id.starts_with("cascaded")) values["map_size"] = std::int64_t{256};
-    list.push_back({layout.id == "single" ? "single, focus seen" : layout.id, values});
+    if (layout.starts_with("cascaded")) values["map_size"] = std::int64_t{256};
+    list.push_back({layout == "single" ? "single, focus seen" : layout, values});
   }
   return list;
 }
@@ -176,8 +175,7 @@ int main(int count, char** values) {
   return penumbra::bench::run_program(
       count, values, "Errors of layouts by distance, and how they crawl",
       [&](CLI::App& app) {
-        app.add_option("--size", options.size, "Pixels, width and height")
-            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_size_option(app, options.size);
         app.add_option("--scenes", options.scenes, "Scenes under a sun")->delimiter(',');
         penumbra::bench::add_device_option(app, options.device);
       },

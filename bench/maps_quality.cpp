@@ -131,8 +131,7 @@ int main(int count, char** values) {
   return penumbra::bench::run_program(
       count, values, "Errors of every map technique beside table 4.2 of van Sambeek 2007",
       [&](CLI::App& app) {
-        app.add_option("--size", options.size, "Pixels, width and height")
-            ->check(CLI::PositiveNumber);
+        penumbra::bench::add_size_option(app, options.size);
         app.add_option("--light-samples", options.light_samples, "Of the reference")
             ->check(CLI::PositiveNumber);
         penumbra::bench::add_device_option(app, options.device);

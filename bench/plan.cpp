@@ -83,10 +83,6 @@ void print_rules(std::uint32_t width) {
   std::printf(
       "| scene | lens | technique | rule off | MiB | vertices | first frame ms | frame ms |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
-  const std::pair<const char*, bool PlanRules::*> rules[] = {{"lights", &PlanRules::lights},
-                                                             {"surfaces", &PlanRules::surfaces},
-                                                             {"casters", &PlanRules::casters},
-                                                             {"textures", &PlanRules::textures}};
   for (const char* id : {"warehouse-outside", "sweep:100x1600x2"})
     for (const double lens : {1.0, 4.0})
       for (const char* technique : {"none", "shadow-map", "shadow-volumes", "ray-traced"}) {
@@ -104,7 +100,7 @@ void print_rules(std::uint32_t width) {
           std::fflush(stdout);
         };
         print("-");
-        for (const auto& [name, rule] : rules) {
+        for (const auto& [name, rule] : lossless_rules) {
           request.rules = {};
           request.rules.*rule = false;
           print(name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -23,6 +24,11 @@ inline int run_program(int count, char** values, const std::string& meaning,
     std::fprintf(stderr, "%s: %s\n", values[0], error.what());
     return 1;
   }
+}
+
+/// The edge of the pictures that are drawn.
+inline void add_size_option(CLI::App& app, std::uint32_t& size) {
+  app.add_option("--size", size, "Pixels, width and height")->check(CLI::PositiveNumber);
 }
 
 /// Which of the Vulkan devices to measure, in words that every program shares.

@@ -234,11 +234,13 @@ ParameterValues complete_parameters(const std::vector<Parameter>& declared,
 bool has_effect(const Parameter& parameter, const std::vector<Parameter>& declared,
                 const ParameterValues& values) {
   if (!parameter.only_with) return true;
-  const Choice& needed = *parameter.only_with;
-  if (const auto given = values.find(needed.name); given != values.end())
-    return std::get<std::string>(given->second) == needed.value;
-  return std::any_of(declared.begin(), declared.end(), [&](const Parameter& other) {
-    return other.name == needed.name && std::get<std::string>(other.default_value) == needed.value;
+  const auto& [name, choices] = *parameter.only_with;
+  const auto is_one = [&needed = choices](const ParameterValue& value) {
+    return std::find(needed.begin(), needed.end(), std::get<std::string>(value)) != needed.end();
+  };
+  if (const auto given = values.find(name); given != values.end()) return is_one(given->second);
+  return std::any_of(declared.begin(), declared.end(), [&, &needed = name](const Parameter& other) {
+    return other.name == needed && is_one(other.default_value);
   });
 }
 

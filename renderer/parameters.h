@@ -15,10 +15,10 @@ using ParameterValues = std::map<std::string, ParameterValue>;
 enum class ParameterType { boolean, integer, real, choice };
 enum class ParameterScale { linear, logarithmic };
 
-/// A choice of a parameter.
-struct Choice {
-  std::string name;   ///< of the parameter
-  std::string value;  ///< its choice
+/// Some of the choices of a parameter.
+struct Choices {
+  std::string name;                 ///< of the parameter
+  std::vector<std::string> values;  ///< any of these
 };
 
 /// One parameter of a technique, declared once. The GLSL names, validation, JSON Schema, web form,
@@ -34,7 +34,7 @@ struct Parameter {
   std::vector<std::string> choices;  ///< of type choice
   std::string meaning;
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
-  std::optional<Choice> only_with = {};  ///< without this choice it changes nothing
+  std::optional<Choices> only_with = {};  ///< without one of these it changes nothing
 
   // For declarations in one line: integer("size", 512, {1, 16384}, "Of the
   // map.").log().in("texels")

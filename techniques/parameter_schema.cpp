@@ -43,7 +43,7 @@ nlohmann::json property_of(const Parameter& parameter) {
     property["maximum"] = parameter.maximum;
   }
   if (parameter.only_with)
-    property["x-only-with"] = {{parameter.only_with->name, parameter.only_with->value}};
+    property["x-only-with"] = {{parameter.only_with->name, parameter.only_with->values}};
   if (parameter.type == ParameterType::integer || parameter.type == ParameterType::real) {
     property["x-unit"] = parameter.unit;
     property["x-scale"] = parameter.scale == ParameterScale::logarithmic ? "logarithmic" : "linear";

@@ -9,8 +9,8 @@ namespace penumbra::techniques {
 
 /// JSON Schema (draft 2020-12) of an object of parameter values: per parameter type, default,
 /// minimum, maximum, enum and description, and what forms and sweeps need besides: x-unit,
-/// x-scale ("linear" or "logarithmic"), x-order (0 first, as declared) and x-only-with, the choice
-/// of another parameter without which this one changes nothing ({"layout": "cascaded"}).
+/// x-scale ("linear" or "logarithmic"), x-order (0 first, as declared) and x-only-with, the choices
+/// of another parameter without which this one changes nothing ({"layout": ["cascaded"]}).
 nlohmann::json parameter_schema(const std::vector<Parameter>& declared);
 
 /// A JSON object of parameter values, as presets and requests have it. Throws bad_value naming the

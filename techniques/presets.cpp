@@ -36,15 +36,16 @@ void finish_parameter(const std::string& technique, Parameter& parameter) {
 void check_conditions(const TechniqueDescription& description) {
   for (const Parameter& parameter : description.parameters) {
     if (!parameter.only_with) continue;
-    const Choice& needed = *parameter.only_with;
-    if (std::none_of(description.parameters.begin(), description.parameters.end(),
-                     [&](const Parameter& other) {
-                       return other.name == needed.name &&
-                              std::find(other.choices.begin(), other.choices.end(), needed.value) !=
-                                  other.choices.end();
-                     }))
-      throw std::logic_error("technique " + description.id + ", parameter " + parameter.name +
-                             ": there is no choice " + needed.value + " of " + needed.name);
+    const Choices& needed = *parameter.only_with;
+    for (const std::string& value : needed.values)
+      if (std::none_of(description.parameters.begin(), description.parameters.end(),
+                       [&](const Parameter& other) {
+                         return other.name == needed.name &&
+                                std::find(other.choices.begin(), other.choices.end(), value) !=
+                                    other.choices.end();
+                       }))
+        throw std::logic_error("technique " + description.id + ", parameter " + parameter.name +
+                               ": there is no choice " + value + " of " + needed.name);
   }
 }
 

@@ -20,14 +20,6 @@ SharedScene with_hard_lights(Scene scene) {
   return std::make_shared<const Scene>(std::move(scene));
 }
 
-/// Layouts that serve directional lights.
-std::vector<std::string> sun_layouts() {
-  std::vector<std::string> ids;
-  for (const shadow_maps::Layout& layout : shadow_maps::layouts())
-    if (layout.refusal(LightKind::directional).empty()) ids.push_back(layout.id);
-  return ids;
-}
-
 /// What a technique of one light leaves to the truth; over rows from `first` to before `end`, as
 /// shares of the picture's height.
 double error_in_rows(const RenderResult& drawn, const RenderResult& truth, double first,
@@ -79,7 +71,7 @@ Outcome q38(Laboratory& lab) {
   const SharedScene whole = with_hard_lights(scene);
   const RenderResult truth = lab.draw(whole, "beam", one_ray);
   Outcome outcome;
-  for (const std::string& layout : sun_layouts()) {
+  for (const std::string& layout : shadow_maps::layouts_for(LightKind::directional)) {
     const double lost = lost_inside(lab.draw(whole, "beam", "shadow-map:layout=" + layout), truth);
     outcome.number("lost, " + layout, lost);
     outcome.part(lost == 0.0);
@@ -93,9 +85,10 @@ Outcome q38(Laboratory& lab) {
   return outcome;
 }
 
-/// The village from straight above, a number of pixels of 300 to the right.
+/// The village from straight above, a number of pixels of 300 to the right; its sun turned,
+/// degrees.
 SharedScene village_from_above(Laboratory& lab, int pixels, double light_turn) {
-  Scene scene = *lab.engine().scene("village");
+  Scene scene = seen_from(*lab.engine().scene("village"), {.light_turn = light_turn});
   Camera& camera = scene.cameras.front();
   camera.projection = Projection::orthographic;
   camera.orthographic_height = 20.0;
@@ -104,11 +97,6 @@ SharedScene village_from_above(Laboratory& lab, int pixels, double light_turn) {
   camera.target = {right, 0.0, 0.0};
   camera.up = {0.0, 0.0, -1.0};
   scene.cameras.resize(1);
-  Light& sun = scene.lights.front();
-  const double angle = glm::radians(light_turn);
-  sun.direction = {sun.direction.x * std::cos(angle) + sun.direction.z * std::sin(angle),
-                   sun.direction.y,
-                   sun.direction.z * std::cos(angle) - sun.direction.x * std::sin(angle)};
   return with_hard_lights(std::move(scene));
 }
 

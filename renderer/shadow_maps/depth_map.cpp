@@ -24,7 +24,14 @@ std::vector<Parameter> layout_parameters() {
     chosen.choices.push_back(layout.id);
     chosen.meaning += " " + layout.id + ": " + layout.meaning + ".";
     for (Parameter own : layout.parameters) {
-      own.only_with = {chosen.name, layout.id};
+      // Layouts may share a parameter: all of them declare it.
+      const auto shared = std::find_if(list.begin(), list.end(),
+                                       [&](const Parameter& p) { return p.name == own.name; });
+      if (shared != list.end()) {
+        shared->only_with->values.push_back(layout.id);
+        continue;
+      }
+      own.only_with = Choices{chosen.name, {layout.id}};
       list.push_back(own);
     }
   }

@@ -24,6 +24,13 @@ std::string only_directional(LightKind kind) {
   return kind == LightKind::directional ? "" : "it is for directional lights";
 }
 
+std::vector<std::string> layouts_for(LightKind kind) {
+  std::vector<std::string> ids;
+  for (const Layout& layout : layouts())
+    if (layout.refusal(kind).empty()) ids.push_back(layout.id);
+  return ids;
+}
+
 const Layout& chosen_layout(const ParameterValues& parameters) {
   const std::string& id = choice_of(parameters, "layout");
   for (const Layout& layout : layouts())

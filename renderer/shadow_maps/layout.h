@@ -57,6 +57,9 @@ inline constexpr const char* default_layout = "single";
 /// In order of id, but the default first.
 const std::vector<Layout>& layouts();
 
+/// Ids of those that serve lights of a kind.
+std::vector<std::string> layouts_for(LightKind kind);
+
 /// The one that parameter `layout` names.
 const Layout& chosen_layout(const ParameterValues& parameters);
 

@@ -9,13 +9,14 @@
 /// What a person sees who looks along a plain, under a sun: scenes that layouts are judged by.
 namespace penumbra::tests {
 
-/// Ground of 80 m x 130 m that a person looks along.
-inline Scene plain() {
+/// Ground of 80 m, from 120 m before a person who looks along it to z = `behind`.
+inline Scene plain(const glm::dvec3& eye = {0, 2, 5}, const glm::dvec3& target = {0, 1, -20},
+                   double behind = 10.0) {
   Scene scene = empty_scene(2.0, 1.0);
-  add_plate(scene, {-40, -120}, {40, 10}, 0.0);
+  add_plate(scene, {-40, -120}, {40, behind}, 0.0);
   Camera& camera = scene.cameras[0];
-  camera.position = {0, 2, 5};
-  camera.target = {0, 1, -20};
+  camera.position = eye;
+  camera.target = target;
   camera.up = {0, 1, 0};
   camera.projection = Projection::perspective;
   camera.vertical_fov = 50.0;
@@ -47,10 +48,7 @@ inline std::vector<std::string> layout_ids() {
 
 /// Layouts that serve a sun.
 inline std::vector<std::string> sun_layouts() {
-  std::vector<std::string> ids;
-  for (const shadow_maps::Layout& layout : shadow_maps::layouts())
-    if (layout.refusal(LightKind::directional).empty()) ids.push_back(layout.id);
-  return ids;
+  return shadow_maps::layouts_for(LightKind::directional);
 }
 
 }  // namespace penumbra::tests

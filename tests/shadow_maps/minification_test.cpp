@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "avenue.h"
 #include "drawing.h"
 #include "scenes.h"
 
@@ -16,17 +17,8 @@ constexpr std::uint32_t picture = 128;  // pixels a side
 
 /// Open ground under a sun 30 degrees high, as a person on it sees it: all of it is lit.
 Scene open_ground() {
-  Scene scene = empty_scene(2.0, 1.0);
-  add_plate(scene, {-40, -120}, {40, 10}, 0.0);
-  Camera& camera = scene.cameras[0];
-  camera.position = {0, 1.7, 5};
-  camera.target = {0, 1.2, -20};
-  camera.up = {0, 1, 0};
-  camera.projection = Projection::perspective;
-  camera.vertical_fov = 50.0;
-  camera.near_plane = 0.1;
-  scene.lights.push_back(sun());
-  scene.lights[0].direction = glm::normalize(glm::dvec3(0.5, -0.5, -0.7071));
+  Scene scene = plain({0, 1.7, 5}, {0, 1.2, -20});
+  scene.lights.push_back(slanted_sun({0.5, -0.5, -0.7071}));
   return scene;
 }
 

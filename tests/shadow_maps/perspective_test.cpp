@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "avenue.h"
 #include "drawing.h"
 #include "hard_truth.h"
 #include "renderer/scene/convex_clip.h"
@@ -17,30 +18,14 @@ namespace {
 
 constexpr std::uint32_t picture = 128;  // pixels a side
 
-/// Ground that a person looks along, from 2 m above it.
 Scene ground() {
-  Scene scene = empty_scene(2.0, 1.0);
-  add_plate(scene, {-40, -120}, {40, 40}, 0.0);
-  Camera& camera = scene.cameras[0];
-  camera.position = {0, 2, 5};
-  camera.target = {0, 0, -6};
-  camera.up = {0, 1, 0};
-  camera.projection = Projection::perspective;
-  camera.vertical_fov = 50.0;
-  camera.near_plane = 0.1;
-  return scene;
+  return plain({0, 2, 5}, {0, 0, -6}, 40.0);
 }
 
 void add_posts(Scene& scene) {
   for (const double z : {1.0, -1.0, -4.0, -8.0, -14.0, -22.0})
     for (const double x : {-2.5, 0.0, 2.0})
       add_box(scene, {x - 0.3, 0.001, z - 0.3}, {x + 0.3, 1.5, z + 0.3});
-}
-
-Light sun_along(const glm::dvec3& direction) {
-  Light light = sun();
-  light.direction = glm::normalize(direction);
-  return light;
 }
 
 Light lamp_towards(const glm::dvec3& position, const glm::dvec3& target, double half_angle) {
@@ -102,7 +87,7 @@ TEST(PerspectiveMaps, fit_to_the_corners_of_what_half_spaces_enclose) {
 TEST(PerspectiveMaps, win_near_the_camera_over_one_plain_view_of_the_scene) {
   Scene scene = ground();
   add_posts(scene);
-  scene.lights.push_back(sun_along({0.7, -1.0, -0.3}));
+  scene.lights.push_back(slanted_sun({0.7, -1.0, -0.3}));
   const ImageF truth = HardTruth(scene).visibility("", picture, picture);
   const auto near_error = [&](const ParameterValues& parameters) {
     const RenderResult result = draw(scene, "shadow-map", parameters, picture);
@@ -119,7 +104,7 @@ TEST(PerspectiveMaps, without_a_virtual_camera_lose_casters_behind_the_camera) {
   // A roof behind the viewer whose shadow falls before him: a sun from behind.
   Scene scene = ground();
   add_box(scene, {-2, 8, 8}, {2, 8.5, 11});
-  scene.lights.push_back(sun_along({0, -1, -1.2}));
+  scene.lights.push_back(slanted_sun({0, -1, -1.2}));
   const auto kept = error_of(scene, {{"layout", "perspective"}});
   const auto lost = error_of(scene, {{"layout", "perspective"}, {"virtual_camera", false}});
   const double none = unshadowed_error(scene);
@@ -134,7 +119,7 @@ TEST(PerspectiveMaps, gain_by_cube_clipping) {
   add_posts(scene);
   // A lamp that lights a patch, and a sun over all of the ground.
   for (const Light& light :
-       {lamp_towards({1.2, 4, 0}, {0, 0, -2}, 35), sun_along({0.7, -1.0, -0.3})}) {
+       {lamp_towards({1.2, 4, 0}, {0, 0, -2}, 35), slanted_sun({0.7, -1.0, -0.3})}) {
     scene.lights = {light};
     const auto error = [&](bool clipped) {
       return rms_of(scene,
@@ -157,7 +142,7 @@ TEST(PerspectiveMaps, stay_finite_and_true_wherever_camera_and_light_stand) {
       // Lights before, beside and behind the viewer, in the picture too.
       const glm::dvec3 from(7 * std::cos(1.7 * angle), 3 + 0.3 * step, 7 * std::sin(1.7 * angle));
       scene.lights = {is_lamp ? lamp_towards(target + from, target, 30 + 3 * step)
-                              : sun_along(-from)};
+                              : slanted_sun(-from)};
       const ParameterValues own{{"layout", "perspective"}, {"map_size", 1024}};
       const auto error = error_of(scene, own);
       EXPECT_LT(error.false_shadow, 0.06);
@@ -211,7 +196,7 @@ TEST(PerspectiveMaps, of_an_orthographic_camera_or_a_parallel_light_are_plain) {
   Camera& camera = scene.cameras[0];
   camera.projection = Projection::orthographic;
   camera.orthographic_height = 12.0;
-  scene.lights.push_back(sun_along({0.7, -1.0, -0.3}));
+  scene.lights.push_back(slanted_sun({0.7, -1.0, -0.3}));
   const double focused = rms_of(scene, {{"map_size", 256}, {"focus", "seen"}});
   EXPECT_NEAR(rms_of(scene, {{"map_size", 256}, {"layout", "perspective"}}), focused,
               0.25 * focused);

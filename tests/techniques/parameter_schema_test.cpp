@@ -102,11 +102,11 @@ TEST(ParameterSchema, CarriesWhatAFormNeeds) {
   EXPECT_FALSE(properties.at("bias").contains("x-only-with"));
 }
 
-TEST(ParameterSchema, TellsTheChoiceThatAParameterNeeds) {
+TEST(ParameterSchema, TellsTheChoicesThatAParameterNeeds) {
   std::vector<Parameter> list = declared();
-  list[1].only_with = Choice{"blur", "gauss"};
+  list[1].only_with = Choices{"blur", {"gauss", "box"}};
   EXPECT_EQ(parameter_schema(list).at("properties").at("bias").at("x-only-with"),
-            (json{{"blur", "gauss"}}));
+            (json{{"blur", {"gauss", "box"}}}));
 }
 
 TEST(ParameterSchema, KeepsWholeLimitsWhole) {

@@ -143,16 +143,17 @@ TEST(CommonParameters, SayHowOftenColorsAreDecodedAndWhetherThePictureIsEncoded)
   EXPECT_EQ(treatment("textures_encoded_twice"), std::pair(1, true));
 }
 
-TEST(Parameters, HaveAnEffectOnlyWithTheChoiceTheyNeed) {
+TEST(Parameters, HaveAnEffectOnlyWithAChoiceTheyNeed) {
   std::vector<Parameter> list = declared();  // blur is box unless given
   list.push_back({.name = "deviation",
                   .default_value = 0.5,
                   .meaning = "of the bell",
-                  .only_with = Choice{"blur", "gauss"}});
+                  .only_with = Choices{"blur", {"gauss", "bell"}}});
   const Parameter& deviation = list.back();
   EXPECT_FALSE(has_effect(deviation, list, {}));
   EXPECT_FALSE(has_effect(deviation, list, {{"blur", std::string("box")}}));
   EXPECT_TRUE(has_effect(deviation, list, {{"blur", std::string("gauss")}}));
+  EXPECT_TRUE(has_effect(deviation, list, {{"blur", std::string("bell")}}));
   EXPECT_TRUE(has_effect(list.front(), list, {}));
 }
 

@@ -77,7 +77,7 @@ export class ParameterForm {
   hide_without_effect() {
     for (const [name, row] of this.rows)
       row.hidden = Object.entries(this.schema.properties[name]["x-only-with"] ?? {})
-        .some(([other, choice]) => this.fields.get(other)?.value !== choice);
+        .some(([other, choices]) => !choices.includes(this.fields.get(other)?.value));
   }
 
   /// Marks the field that the server named.

@@ -7,8 +7,6 @@
 namespace penumbra::shadow_maps {
 namespace {
 
-constexpr CascadeNames sample_names{"sdsm_cascades", "sdsm_lambda", "sdsm_blend"};
-
 /// A view that is asked for bounds along axes, of samples in a slice.
 shader::MapView asked_view(const glm::dvec3& origin, const ViewAxes& axes, const Slice& slice) {
   shader::MapView view = make_view(origin, axes, 1.0, false, 1.0);
@@ -77,10 +75,7 @@ void end_at_samples(std::vector<shader::MapView>& views, const std::vector<Bound
 
 std::vector<shader::MapView> fit_to_samples(const ViewFitting& fitting) {
   const ViewAxes axes = axes_with_down(fitting.light, fitting.camera.direction);
-  const auto slices = blended_slices(
-      split_depths(sampled_slice(fitting), cascade_count(fitting.parameters, sample_names),
-                   real_of(fitting.parameters, sample_names.lambda)),
-      real_of(fitting.parameters, sample_names.blend));
+  const auto slices = cut_slices(sampled_slice(fitting), fitting.parameters);
   const glm::dvec3 origin = fitting.camera.position;
   std::vector<shader::MapView> asked;
   for (std::size_t i = 0; i + 1 < slices.size(); ++i)
@@ -111,12 +106,10 @@ Layout describe_cascaded_sdsm() {
           .meaning =
               "slices as of cascaded, each fitted to samples of what the camera really sees, for "
               "directional lights",
-          .parameters = split_parameters(sample_names),
+          .parameters = split_parameters(),
           .refusal = only_directional,
-          .view_count =
-              [](const Light&, const ParameterValues& parameters) {
-                return cascade_count(parameters, sample_names);
-              },
+          .view_count = [](const Light&,
+                           const ParameterValues& parameters) { return cascade_count(parameters); },
           .fit = fit_to_samples,
           .reads_samples = true};
 }

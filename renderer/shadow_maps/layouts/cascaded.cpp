@@ -14,8 +14,6 @@ Slice steady_slice(const Slice& seen) {
           std::exp2(std::ceil(4.0 * std::log2(seen.far)) / 4.0)};
 }
 
-constexpr CascadeNames box_names{"cascades", "split_lambda", "cascade_blend"};
-
 /// A square of the plane across the light's direction, m.
 struct Square {
   glm::dvec2 center;
@@ -74,10 +72,7 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
       fitting.use.follows_extent ? extent_radius(*light.source) * covered.size().z : 0.0;
 
   const Slice seen = visible_slice(fitting);
-  const auto slices = blended_slices(
-      split_depths(steady ? steady_slice(seen) : seen, cascade_count(parameters, box_names),
-                   real_of(parameters, box_names.lambda)),
-      real_of(parameters, box_names.blend));
+  const auto slices = cut_slices(steady ? steady_slice(seen) : seen, parameters);
   std::vector<shader::MapView> views;
   for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
     const Slice& slice = slices[i];
@@ -98,7 +93,7 @@ std::vector<shader::MapView> fit_cascades(const ViewFitting& fitting) {
 }
 
 std::vector<Parameter> cascade_parameters() {
-  std::vector<Parameter> list = split_parameters(box_names);
+  std::vector<Parameter> list = split_parameters();
   list.push_back(
       boolean("cascade_snapping", true,
               "Fit cascades to spheres and move them by whole texels, so that shadows do not crawl "
@@ -116,10 +111,8 @@ Layout describe_cascaded() {
               "lights",
           .parameters = cascade_parameters(),
           .refusal = only_directional,
-          .view_count =
-              [](const Light&, const ParameterValues& parameters) {
-                return cascade_count(parameters, box_names);
-              },
+          .view_count = [](const Light&,
+                           const ParameterValues& parameters) { return cascade_count(parameters); },
           .fit = fit_cascades};
 }
 
