@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "renderer/device.h"
@@ -45,6 +46,13 @@ struct PlanRules {
   /// better.
   bool depth_range = true;
 };
+
+/// The rules that change no picture, by the names that a plan's lines have.
+inline constexpr std::pair<const char*, bool PlanRules::*> lossless_rules[] = {
+    {"lights", &PlanRules::lights},
+    {"surfaces", &PlanRules::surfaces},
+    {"casters", &PlanRules::casters},
+    {"textures", &PlanRules::textures}};
 
 /// One picture. The result is a pure function of this, the device and the version of the renderer.
 struct RenderRequest {

@@ -8,12 +8,6 @@
 namespace penumbra::experiments::plan {
 namespace {
 
-const std::vector<std::pair<const char*, bool PlanRules::*>> plan_rules{
-    {"lights", &PlanRules::lights},
-    {"surfaces", &PlanRules::surfaces},
-    {"casters", &PlanRules::casters},
-    {"textures", &PlanRules::textures}};
-
 double middle(std::vector<double> times) {
   std::sort(times.begin(), times.end());
   return times[times.size() / 2];
@@ -26,7 +20,7 @@ Shares measure_shares(Renderer& renderer, const RenderRequest& request, const Ti
   std::vector<RenderRequest> variants{request, request};
   variants[1].technique = &technique_of_family("none");
   variants[1].parameters = {};
-  for (const auto& [name, rule] : plan_rules) {
+  for (const auto& [name, rule] : lossless_rules) {
     variants.push_back(request);
     variants.back().rules.*rule = false;
   }
@@ -41,8 +35,8 @@ Shares measure_shares(Renderer& renderer, const RenderRequest& request, const Ti
     }
   shares.frame_ms = middle(times[0]);
   shares.none_ms = middle(times[1]);
-  for (std::size_t i = 0; i < plan_rules.size(); ++i)
-    shares.rules.push_back({plan_rules[i].first, middle(times[i + 2])});
+  for (std::size_t i = 0; i < std::size(lossless_rules); ++i)
+    shares.rules.push_back({lossless_rules[i].first, middle(times[i + 2])});
   return shares;
 }
 
