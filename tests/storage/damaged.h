@@ -9,6 +9,7 @@
 #include "server/storage/participants.h"
 #include "server/storage/studies.h"
 #include "tests/storage/folder.h"
+#include "tests/storage/participation.h"
 
 namespace penumbra::server::storage {
 
@@ -29,20 +30,11 @@ class Damaged : public testing::Test {
   Damaged() {
     make_private_folder(data);
     Store store(data);
-    store.studies.put_draft("s", {{"id", "s"}}, 42, "2026-01-01");
-    store.studies.start_publishing("s", 1, "hash", 0);
-    store.studies.open("s", 1, "2026-01-01");
+    open_study(store.studies);
   }
 
   static ParticipantRecord enter(Store& store, const std::string& name) {
-    ParticipantRecord record;
-    record.pseudonym = "p-" + name;
-    record.study = "s";
-    record.token = "token-" + name;
-    record.withdrawal_code = "code-" + name;
-    record.enrolment_id = "enrolment-" + name;
-    record.entered_at = "2026-01-02";
-    return store.participants.enrol(record, 0, "2026-01-01");
+    return store.participants.enrol(person(name), 0, "2026-01-01");
   }
 
   static void answer(Store& store, const ParticipantRecord& who, int page, int value) {

@@ -10,27 +10,31 @@
 
 namespace penumbra::server::storage {
 
+/// Publishes the study "s", which has no pages of its own.
+inline void open_study(Studies& studies) {
+  studies.put_draft("s", {{"id", "s"}}, 42, "2026-01-01");
+  studies.start_publishing("s", 1, "hash", 0);
+  studies.open("s", 1, "2026-01-01");
+}
+
+/// Somebody who is to enter it.
+inline ParticipantRecord person(const std::string& name,
+                                const std::string& entered = "2026-01-02") {
+  ParticipantRecord record;
+  record.pseudonym = "p-" + name;
+  record.study = "s";
+  record.token = "token-" + name;
+  record.withdrawal_code = "code-" + name;
+  record.enrolment_id = "enrolment-" + name;
+  record.language = "en";
+  record.entered_at = entered;
+  return record;
+}
+
 /// An open study without pages of its own, and people who take part in it.
 class Participation : public testing::Test {
  protected:
-  Participation() {
-    studies.put_draft("s", {{"id", "s"}}, 42, "2026-01-01");
-    studies.start_publishing("s", 1, "hash", 0);
-    studies.open("s", 1, "2026-01-01");
-  }
-
-  static ParticipantRecord person(const std::string& name,
-                                  const std::string& entered = "2026-01-02") {
-    ParticipantRecord record;
-    record.pseudonym = "p-" + name;
-    record.study = "s";
-    record.token = "token-" + name;
-    record.withdrawal_code = "code-" + name;
-    record.enrolment_id = "enrolment-" + name;
-    record.language = "en";
-    record.entered_at = entered;
-    return record;
-  }
+  Participation() { open_study(studies); }
 
   ParticipantRecord enter(const std::string& name, const std::string& entered = "2026-01-02") {
     return participants.enrol(person(name, entered), 0, "2026-01-01");
