@@ -21,6 +21,9 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+/// Runs that are timed before the first of them is judged; more of them would hold up progress.
+constexpr std::size_t most_timed_first = 32;
+
 /// Changes with how runs are measured, where no digest tells.
 constexpr int protocol = 1;
 
@@ -163,7 +166,7 @@ Engine::~Engine() {
 }
 
 std::size_t Engine::most_begun() const {
-  if (device().type == "cpu") return 0;
+  if (!options_.judged_beside.value_or(device().type != "cpu")) return 0;
   return std::max(2u, std::thread::hardware_concurrency()) - 1;
 }
 
@@ -173,15 +176,35 @@ json Engine::measure(const Run& run) {
   return next();
 }
 
+// Names are the asker's: two names of one thing share a measurement.
+bool Engine::is_known(const std::string& key) const {
+  return results_.find(key) != nullptr ||
+         std::any_of(begun_.begin(), begun_.end(), [&](const Begun& b) { return b.key == key; });
+}
+
+void Engine::time_first(const std::vector<Run>& runs) {
+  if (most_begun() == 0) return;
+  timed_.clear();
+  for (const Run& run : runs) {
+    if (run.truth == Truth::none) continue;
+    const techniques::Resolved technique = techniques::resolve(run.technique, run.parameters);
+    const std::string key = scenes::json_text(key_of(run, technique));
+    if (is_known(key) || timed_.contains(key)) continue;
+    RenderRequest request = request_of(run, technique);
+    request.visibility = false;
+    try {
+      RenderResult drawn;
+      timed_[key] = time(run, std::move(request), drawn);
+    } catch (const Error&) {  // drawn for its errors it fails again, and that is kept
+    }
+  }
+}
+
 void Engine::begin(const Run& run) {
   const techniques::Resolved technique = techniques::resolve(run.technique, run.parameters);
   const std::string key = scenes::json_text(key_of(run, technique));
-  // Names are the asker's: two names of one thing share a measurement.
-  const bool known =
-      results_.find(key) != nullptr ||
-      std::any_of(begun_.begin(), begun_.end(), [&](const Begun& b) { return b.key == key; });
   std::future<json> fresh;
-  if (!known) fresh = measure_now(run, technique);
+  if (!is_known(key)) fresh = measure_now(run, technique, key);
   begun_.push_back({asked(run, technique), key, std::move(fresh)});
 }
 
@@ -259,7 +282,19 @@ const Engine::Baseline& Engine::baseline_of(const Run& run) {
   return baseline;
 }
 
-std::future<json> Engine::measure_now(const Run& run, const techniques::Resolved& technique) {
+Engine::Timed Engine::time(const Run& run, RenderRequest request, RenderResult& drawn) {
+  const std::shared_ptr<void> alone = options_.alone ? options_.alone() : nullptr;
+  Timed timed;
+  if (!is_baseline(run)) timed.before = baseline_of(run);
+  drawn = timer_.time(std::move(request));
+  timed.cost = drawn.cost;
+  if (is_baseline(run))
+    baselines_[view_of(run)] = {timed.cost.median_ms, timed.cost.settled, Clock::now()};
+  return timed;
+}
+
+std::future<json> Engine::measure_now(const Run& run, const techniques::Resolved& technique,
+                                      const std::string& key) {
   json row = {{"status", "done"}, {"error", nullptr}};
   auto drawn = std::make_shared<RenderResult>();
   std::shared_ptr<const Judge> judge;
@@ -272,17 +307,17 @@ std::future<json> Engine::measure_now(const Run& run, const techniques::Resolved
   try {
     // The truth first: nothing may come between the times of `none` and of the technique.
     if (run.truth != Truth::none) judge = judge_of(run);
-    std::shared_ptr<void> alone = options_.alone ? options_.alone() : nullptr;
-    const Baseline before = is_baseline(run) ? Baseline{} : baseline_of(run);
-    *drawn = timer_.time(request_of(run, technique));
-    alone.reset();
-    add_cost(row, drawn->cost);
+    RenderRequest request = request_of(run, technique);
+    auto known = timed_.extract(key);
+    if (!known.empty()) *drawn = renderer_.render(request);
+    const Timed timed =
+        known.empty() ? time(run, std::move(request), *drawn) : std::move(known.mapped());
+    add_cost(row, timed.cost);
     row["notes"] = drawn->notes;
-    const double none_ms = is_baseline(run) ? drawn->cost.median_ms : before.ms;
-    row["settled"] = drawn->cost.settled && before.settled;
+    const double none_ms = is_baseline(run) ? timed.cost.median_ms : timed.before.ms;
+    row["settled"] = timed.cost.settled && timed.before.settled;
     row["none_ms"] = none_ms;
-    row["over_none"] = none_ms > 0.0 ? json(drawn->cost.median_ms / none_ms) : json(nullptr);
-    if (is_baseline(run)) baselines_[view_of(run)] = {none_ms, drawn->cost.settled, Clock::now()};
+    row["over_none"] = none_ms > 0.0 ? json(timed.cost.median_ms / none_ms) : json(nullptr);
   } catch (const Error& error) {
     row = failed(row, error);
     return std::async(std::launch::deferred, [row] { return row; });
@@ -354,6 +389,9 @@ std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
   };
   std::stable_sort(runs.begin(), runs.end(),
                    [&](const Run& a, const Run& b) { return order(a) < order(b); });
+  const auto of_one_view = [](const Run& a, const Run& b) {
+    return a.scene == b.scene && view_of(a) == view_of(b);
+  };
   std::vector<json> rows;
   const auto start = Clock::now();
   const std::size_t before = engine.measured();
@@ -365,9 +403,17 @@ std::vector<json> run_all(Engine& engine, std::vector<Run> runs,
                    static_cast<double>(now.measured) * static_cast<double>(now.total - now.done);
     progress(now);
   };
-  for (const Run& run : runs) {
+  std::size_t timed = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Run& run = runs[i];
     tell(run.scene + " " + run.technique + " " + std::to_string(run.width) + "x" +
          std::to_string(run.height));
+    if (i == timed) {
+      while (timed < runs.size() && timed < i + most_timed_first && of_one_view(run, runs[timed]))
+        ++timed;
+      engine.time_first({runs.begin() + static_cast<std::ptrdiff_t>(i),
+                         runs.begin() + static_cast<std::ptrdiff_t>(timed)});
+    }
     engine.begin(run);
     while (engine.begun() > engine.most_begun()) rows.push_back(engine.next());
   }

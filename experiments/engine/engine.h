@@ -52,6 +52,9 @@ struct EngineOptions {
   TimingBudget timing;
   /// Called around what is timed; what it returns is held meanwhile. May be empty.
   std::function<std::shared_ptr<void>()> alone;
+  /// Errors are reckoned in threads beside the drawing; by default not on processors, whose times
+  /// would tell.
+  std::optional<bool> judged_beside;
 };
 
 /// Measures runs in process and keeps what it measured: a run that is known is not measured again,
@@ -72,15 +75,17 @@ class Engine {
   /// for scenes and techniques that there are not, and where the device fails.
   nlohmann::json measure(const Run& run);
 
-  /// The same in two parts: draws and times the run now, and judges its picture in a thread. So a
-  /// GPU goes on while errors are reckoned; left idle, it would lower its clocks. Throws as
-  /// `measure` does.
+  /// The same in two parts: draws and times the run now, and judges its picture in a thread.
+  /// Throws as `measure` does.
   void begin(const Run& run);
+  /// Times runs of one view, for which `begin` then only draws the picture, where errors are
+  /// reckoned beside: a GPU that waits for errors between two times lowers its clocks.
+  void time_first(const std::vector<Run>& runs);
   /// The result of the run that was begun first, once it is judged.
   nlohmann::json next();
   /// Runs that were begun and not asked for.
   std::size_t begun() const { return begun_.size(); }
-  /// How many may be judged beside what is drawn: on a processor none, whose times would tell.
+  /// How many may be judged beside what is drawn.
   std::size_t most_begun() const;
 
   /// Runs that were measured, not known.
@@ -108,9 +113,17 @@ class Engine {
     bool settled = true;
     std::chrono::steady_clock::time_point when;
   };
+  struct Timed {
+    Cost cost;
+    Baseline before;  ///< of `none`; empty for itself
+  };
 
+  bool is_known(const std::string& key) const;
+  /// The cost is of frames that were timed, the picture of the last one drawn.
+  Timed time(const Run& run, RenderRequest request, RenderResult& drawn);
   nlohmann::json key_of(const Run& run, const techniques::Resolved& technique);
-  std::future<nlohmann::json> measure_now(const Run& run, const techniques::Resolved& technique);
+  std::future<nlohmann::json> measure_now(const Run& run, const techniques::Resolved& technique,
+                                          const std::string& key);
   RenderRequest request_of(const Run& run, const techniques::Resolved& technique);
   RenderRequest truth_of(const Run& run);
   std::shared_ptr<const Judge> judge_of(const Run& run);
@@ -131,6 +144,7 @@ class Engine {
   /// Of the scene at hand, by view.
   std::map<std::string, std::shared_ptr<const Judge>> judges_;
   std::map<std::string, Baseline> baselines_;
+  std::map<std::string, Timed> timed_;  ///< by key: not drawn for their errors yet
   std::deque<Begun> begun_;
 };
 

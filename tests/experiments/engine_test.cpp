@@ -140,6 +140,35 @@ TEST(Engine, draws_none_first_in_every_view_and_scenes_one_after_the_other) {
   EXPECT_THAT(*told[1].left_s, Gt(0.0));
 }
 
+TEST(Engine, times_a_view_before_it_judges_and_finds_the_same_errors) {
+  std::vector runs{small_run("none"), small_run("shadow-map"), small_run("pcf"),
+                   small_run("shadow-map", 48)};
+  runs.push_back(small_run("esm"));
+  // No sampler filters logarithms.
+  runs.back().parameters = {{"filtering", std::string("logarithmic")}, {"mips", true}};
+  for (auto& run : runs) run.truth = Truth::area;
+  std::vector<json> measured[2];
+  for (const bool beside : {false, true}) {
+    const TemporaryFolder folder;
+    auto options = options_in(folder.path());
+    options.judged_beside = beside;
+    Engine engine(options);
+    measured[beside] = run_all(engine, runs, nullptr);
+    EXPECT_EQ(engine.measured(), runs.size());
+  }
+  ASSERT_EQ(measured[true].size(), runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const json &at_once = measured[false][i], &beside = measured[true][i];
+    ASSERT_EQ(beside.at("name"), at_once.at("name"));
+    EXPECT_EQ(beside.at("error"), at_once.at("error"));
+    if (at_once.at("status") == "failed") continue;
+    for (const char* error : {"rms_y", "flip", "visibility_rms", "false_shadow", "missing_shadow"})
+      EXPECT_EQ(beside.at(error), at_once.at(error)) << error;
+    EXPECT_GE(beside.at("frames").get<int>(), 3) << "of the picture alone, not of what was timed";
+    EXPECT_GT(beside.at("none_ms").get<double>(), 0.0);
+  }
+}
+
 TEST(Engine, keeps_what_a_technique_refuses_as_a_result) {
   const TemporaryFolder folder;
   Engine engine(options_in(folder.path()));
