@@ -4,12 +4,11 @@
 // its threads, hardly move with what else the machine does; they are what is compared. Techniques
 // take turns, and the median of all turns is printed: a frame, what it costs over the first
 // technique named, and device milliseconds of its passes.
-#include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include "bench/frame_cost.h"
 #include "bench/program.h"
 #include "renderer/render.h"
 #include "scenes/library.h"
@@ -18,6 +17,7 @@
 namespace {
 
 using namespace penumbra;
+using namespace penumbra::bench;
 
 struct Options {
   std::string scene;
@@ -32,34 +32,11 @@ struct Options {
   std::string device;
 };
 
-/// Milliseconds that the threads of this process have worked.
-double worked_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 struct Row {
   RenderRequest request;
   std::vector<double> worked;  ///< ms a frame, a turn each
   Cost cost;                   ///< of the last turn
 };
-
-void measure(Renderer& renderer, Row& row, std::uint32_t frames) {
-  // Few frames and many: what is left of their difference is frames alone.
-  const double start = worked_ms();
-  row.request.frames = 2;
-  renderer.render(row.request);
-  const double between = worked_ms();
-  row.request.frames = 2 + frames;
-  row.cost = renderer.render(row.request).cost;
-  row.worked.push_back((worked_ms() - between - (between - start)) / frames);
-}
 
 /// Settings that a technique does not have are left out of its request.
 void apply(const std::vector<std::string>& settings, RenderRequest& request) {
@@ -91,7 +68,11 @@ void run(const Options& options) {
     renderer.render(request);  // compiles shaders
   }
   for (std::uint32_t turn = 0; turn < options.repeats; ++turn)
-    for (Row& row : rows) measure(renderer, row, options.frames);
+    for (Row& row : rows) {
+      FrameCost frame = frame_cost(renderer, row.request, options.frames);
+      row.worked.push_back(frame.worked_ms);
+      row.cost = std::move(frame.cost);
+    }
   std::printf("%s, %s, %ux%u, median of %u turns of %u frames\n", renderer.device().name.c_str(),
               options.scene.c_str(), options.width, options.height, options.repeats,
               options.frames);
@@ -111,7 +92,7 @@ void run(const Options& options) {
 
 int main(int count, char** values) {
   Options options;
-  return penumbra::bench::run_program(
+  return run_program(
       count, values, "Processor time of frames of a scene",
       [&](CLI::App& app) {
         app.add_option("scene", options.scene, "Id of a scene, or a file")->required();
@@ -125,7 +106,7 @@ int main(int count, char** values) {
         app.add_option("--supersampling", options.supersampling, "Samples of a pixel");
         app.add_option("--frames", options.frames, "Frames of a turn")->check(CLI::PositiveNumber);
         app.add_option("--repeats", options.repeats, "Turns")->check(CLI::PositiveNumber);
-        penumbra::bench::add_device_option(app, options.device);
+        add_device_option(app, options.device);
       },
       [&] { run(options); });
 }

@@ -261,11 +261,6 @@ class Filters {
   std::string declarations_, table_declarations_;
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 void print_row(vulkan::Device& device, vulkan::PipelineCache& pipelines, const Case& subject,
                int repeats) {
   vulkan::Recorder recorder(device, pipelines);
@@ -284,13 +279,14 @@ void print_row(vulkan::Device& device, vulkan::PipelineCache& pipelines, const C
     for (const vulkan::PassRecord& record : recorder.records())
       times[record.name].push_back(record.ms);
   }
-  const double drawn = median(times.at("full screen"));
-  const double computed = median(times.at("compute"));
-  const double shared = median(times.at("compute, shared"));
+  const double drawn = penumbra::bench::median(times.at("full screen"));
+  const double computed = penumbra::bench::median(times.at("compute"));
+  const double shared = penumbra::bench::median(times.at("compute, shared"));
   std::printf("| %u | %s | %s | %lld | %.3g | %.3g | %.3g | %.2f | %.3g | %.1e |\n", subject.size,
               subject.precision.c_str(), subject.filter.c_str(),
               static_cast<long long>(subject.radius), drawn, computed, shared,
-              drawn / std::min(computed, shared), median(times.at("summed area")), difference);
+              drawn / std::min(computed, shared), penumbra::bench::median(times.at("summed area")),
+              difference);
   std::fflush(stdout);
 }
 

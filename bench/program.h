@@ -1,10 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace penumbra::bench {
 
@@ -24,6 +26,12 @@ inline int run_program(int count, char** values, const std::string& meaning,
     std::fprintf(stderr, "%s: %s\n", values[0], error.what());
     return 1;
   }
+}
+
+/// The upper one of an even count.
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
 }
 
 /// The edge of the pictures that are drawn.

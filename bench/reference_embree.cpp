@@ -32,11 +32,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 struct Receiver {
   glm::vec3 origin;  ///< moved from its facet as the reference's is
   glm::vec3 normal;
@@ -231,7 +226,7 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
   }
   const double rays =
       static_cast<double>(receivers.size()) * samples * static_cast<double>(scene->lights.size());
-  const double embree_ms = median(timing.embree);
+  const double embree_ms = penumbra::bench::median(timing.embree);
   std::printf("%s, %ux%u, %u light samples, %u threads, medians of %d rounds\n", name.c_str(), size,
               size, samples, std::thread::hardware_concurrency(), rounds);
   std::printf("device                %s\n", renderer.device().name.c_str());
@@ -242,8 +237,8 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
     std::printf("reference, %-10s %.0f ms, %.1f Mrays/s, %.2f of Embree's time\n", what, ms,
                 rays / ms / 1e3, ms / embree_ms);
   };
-  line("shaded", median(timing.shaded));
-  line("visibility", median(timing.visibility));
+  line("shaded", penumbra::bench::median(timing.shaded));
+  line("visibility", penumbra::bench::median(timing.visibility));
 }
 
 }  // namespace

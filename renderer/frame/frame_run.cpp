@@ -16,8 +16,15 @@ using vulkan::Sampling;
 
 CameraMatrices picture_matrices(const RenderRequest& request, const GpuScene& scene,
                                 const Camera& camera) {
-  return camera_matrices(camera, scene.origin(),
-                         static_cast<double>(request.width) / request.height, scene.radius());
+  const double aspect = static_cast<double>(request.width) / request.height;
+  double far = 1.0;
+  if (camera.projection == Projection::orthographic) {
+    std::vector<Bounds> boxes;
+    for (const DrawRange& range : scene.ranges())
+      if (range.visible) boxes.push_back(range.box());
+    far = seen_depth(camera, scene.origin(), aspect, boxes);
+  }
+  return camera_matrices(camera, scene.origin(), aspect, far);
 }
 
 FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,

@@ -89,7 +89,6 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
       frame_(frame) {
   // Of the whole scene: what the plan leaves out must not move a single bit of the rest.
   const Bounds bounds = world_bounds(*scene_);
-  radius_ = bounds.radius();
   if (const Bounds part = near_part(bounds); !part.empty()) {
     low_ = glm::vec3(part.low);
     high_ = glm::vec3(part.high);

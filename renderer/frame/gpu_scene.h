@@ -67,7 +67,6 @@ class GpuScene {
   /// Box around the whole scene, used or not, as far as the frame reaches; world.
   glm::vec3 low() const { return low_; }
   glm::vec3 high() const { return high_; }
-  double radius() const { return radius_; }  ///< of the whole scene, metres
   /// Whether parts of the scene lie beyond the frame's reach.
   bool is_far() const { return std::isfinite(frame_.reach); }
   /// The part of a box in the scene's coordinates that lies within reach, in world space; may be
@@ -122,7 +121,6 @@ class GpuScene {
   std::vector<InstanceUse> uses_;
   std::vector<bool> needed_textures_;
   SceneFrame frame_;
-  double radius_ = 0.0;
   std::vector<std::string> notes_;
   std::vector<std::uint32_t> first_vertex_;  ///< by instance
   glm::vec3 low_{0.0f};

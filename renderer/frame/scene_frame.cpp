@@ -74,12 +74,13 @@ Bounds GpuScene::near_part(const Bounds& box) const {
 }
 
 void GpuScene::find_coarse_coordinates() {
-  if (is_far())
-    notes_.push_back("the scene reaches " + in_metres(2.0 * radius_) +
+  if (is_far()) {
+    const double size = 2.0 * world_bounds(*scene_).radius();
+    notes_.push_back("the scene reaches " + in_metres(size) +
                      ": coordinates are counted from the camera, in steps of " +
-                     in_metres(float_step(2.0 * radius_)) +
-                     " at its far end, and shadows are fitted to " + in_metres(frame_.reach) +
-                     " around the camera");
+                     in_metres(float_step(size)) + " at its far end, and shadows are fitted to " +
+                     in_metres(frame_.reach) + " around the camera");
+  }
   // A file's own floats may be too coarse for what they describe, wherever they are counted from.
   constexpr double coarse = 1e-4;
   double worst = 0.0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "renderer/scene/convex_clip.h"
+
 namespace penumbra {
 
 glm::dvec3 across(const glm::dvec3& direction, const glm::dvec3& wanted) {
@@ -62,25 +64,35 @@ std::array<glm::dvec3, 4> near_corners(const CameraMatrices& camera) {
 }
 
 CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,
-                               double scene_radius) {
+                               double far) {
   CameraMatrices matrices;
   matrices.position = camera.position - origin;
   matrices.direction = glm::normalize(camera.target - camera.position);
   const glm::dmat4 view = view_from_world(matrices.position, matrices.direction, camera.up);
-  if (camera.projection == Projection::perspective) {
-    matrices.clip_from_world =
-        clip_from_view_perspective(camera.vertical_fov, aspect, camera.near_plane) * view;
-  } else {
-    const double content = glm::length(matrices.position) + 2.0 * scene_radius;
-    const double margin = content > 0.0 ? std::min(1.0, content) : 1.0;
-    const double reach = content + camera.near_plane + margin;
-    matrices.clip_from_world =
-        clip_from_view_orthographic(camera.orthographic_height * aspect, camera.orthographic_height,
-                                    camera.near_plane, reach) *
-        view;
-  }
+  matrices.clip_from_world =
+      camera.projection == Projection::perspective
+          ? clip_from_view_perspective(camera.vertical_fov, aspect, camera.near_plane) * view
+          : clip_from_view_orthographic(camera.orthographic_height * aspect,
+                                        camera.orthographic_height, camera.near_plane,
+                                        camera.near_plane + far) *
+                view;
   matrices.world_from_clip = glm::inverse(matrices.clip_from_world);
   return matrices;
+}
+
+double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
+                  const std::vector<Bounds>& boxes) {
+  const CameraMatrices matrices = camera_matrices(camera, origin, aspect, 1.0);
+  const auto sides = side_planes(matrices.clip_from_world);
+  double farthest = 0.0;
+  for (const Bounds& box : boxes)
+    visit_clipped_corners(box, sides, [&](const glm::dvec3& corner) {
+      farthest = std::max(
+          farthest, glm::dot(corner - matrices.position, matrices.direction) - camera.near_plane);
+    });
+  // Corners are rounded: what is seen must not end at the end of depth.
+  constexpr double margin = 1.01;
+  return farthest > 0.0 ? margin * farthest : 1.0;
 }
 
 }  // namespace penumbra

@@ -33,8 +33,14 @@ struct CameraMatrices {
 /// Corners of the rectangle that the picture shows of the near plane, in a round.
 std::array<glm::dvec3, 4> near_corners(const CameraMatrices& camera);
 
-/// `scene_radius` bounds the depth of orthographic cameras, metres from the camera's target.
+/// `far` is where the depth of orthographic cameras ends, metres along the view beyond the near
+/// plane; perspective views have no end.
 CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,
-                               double scene_radius);
+                               double far);
+
+/// The farthest that an orthographic camera sees of boxes, metres beyond its near plane: its depth
+/// is a float of that, and finer the less it spans. 1 where it sees none.
+double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
+                  const std::vector<Bounds>& boxes);
 
 }  // namespace penumbra

@@ -61,7 +61,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Held{"shadow-volumes", "wide-view", 179.9},
                     Held{"shadow-volumes", "defects", 6}, Held{"shadow-volumes", "intensity", 1e30},
                     Held{"shadow-map", "ground", 1e5}, Held{"shadow-map", "near", 1e-9},
-                    Held{"shadow-map", "scale-down", 1e-6}, Held{"vsm", "outlier", 1e6}));
+                    Held{"shadow-map", "scale-down", 1e-6}, Held{"vsm", "outlier", 1e6},
+                    Held{"shadow-map", "orthographic-outlier", 1e8},
+                    Held{"shadow-volumes", "orthographic-outlier", 1e8}));
 
 TEST(WidePictures, keep_their_light_however_long_they_are) {
   // Few of their pixels see the scene: all of those are judged.
