@@ -50,9 +50,10 @@ bool outside_light(vec3 x) {
   if (light.direction.w > 0.0 && length(offset) - radius > light.direction.w) return true;
   if (int(light.position.w) != light_kind_spot) return false;
   // Distance to the cone's mantle around the centre; a point's own cone is moved by radius at most.
+  // From kilometres away neither squares of distances nor the cosine of so narrow a cone tell enough.
   float along = dot(offset, light.direction.xyz);
-  float across = sqrt(max(dot(offset, offset) - along * along, 0.0));
-  float sine = sqrt(max(1.0 - light.cone.y * light.cone.y, 0.0));
+  float across = length(cross(offset, light.direction.xyz));
+  float sine = sqrt(light.up.w * (2.0 - light.up.w));
   return across * light.cone.y - along * sine > radius + 1e-4 * (length(offset) + radius);
 }
 

@@ -62,6 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Held{"shadow-volumes", "defects", 6}, Held{"shadow-volumes", "intensity", 1e30},
                     Held{"shadow-map", "ground", 1e5}, Held{"shadow-map", "near", 1e-9},
                     Held{"shadow-map", "scale-down", 1e-6}, Held{"vsm", "outlier", 1e6},
+                    Held{"reference", "spot-distance", 1e6},
+                    Held{"ray-traced", "spot-distance", 1e5}, Held{"reference", "cone", 0.01},
                     Held{"shadow-map", "orthographic-outlier", 1e8},
                     Held{"shadow-volumes", "orthographic-outlier", 1e8}));
 
