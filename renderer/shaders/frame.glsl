@@ -5,6 +5,10 @@
 
 layout(std140) uniform FrameBlock { FrameData frame; };
 
+// A power of two near one over the scene's size, 1/m: products of lengths that are scaled by it neither
+// overflow nor vanish, and lose no bit.
+float inverse_size() { return frame.ambient.w; }
+
 const float pi = 3.14159265358979;
 
 float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }

@@ -41,7 +41,8 @@ void main() {
 
   // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it
   // in clipped triangles. Both normals look towards the viewer.
-  vec3 facet = normalize(cross(dFdx(world_position), dFdy(world_position)));
+  vec3 right = inverse_size() * dFdx(world_position), down = inverse_size() * dFdy(world_position);
+  vec3 facet = normalize(cross(right, down));
   vec3 to_camera = frame.camera_position.w > 0.5 ? frame.camera_position.xyz - world_position
                                                  : -frame.camera_direction.xyz;
   if (dot(facet, to_camera) < 0.0) facet = -facet;

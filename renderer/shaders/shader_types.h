@@ -32,7 +32,7 @@ struct FrameData {
   mat4 world_from_clip;
   vec4 camera_position;   // xyz world; w 1 for perspective, 0 for orthographic
   vec4 camera_direction;  // xyz unit, into the scene; w near plane, m
-  vec4 ambient;           // rgb linear
+  vec4 ambient;           // rgb linear; w power of two near 1 / size of the scene, 1/m
   vec4 background_low;    // rgb linear, horizon
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure

@@ -33,8 +33,8 @@ int light_side(vec3 a, vec3 b, vec3 c) {
   if (is_before(b, a)) { vec3 t = a; a = b; b = t; even = !even; }
   if (is_before(c, b)) { vec3 t = b; b = c; c = t; even = !even; }
   if (is_before(b, a)) { vec3 t = a; a = b; b = t; even = !even; }
-  precise vec3 u = b - a;
-  precise vec3 v = c - a;
+  precise vec3 u = inverse_size() * (b - a);
+  precise vec3 v = inverse_size() * (c - a);
   precise vec3 normal = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
   precise vec3 to_light = is_directional() ? -light.direction.xyz : light.position.xyz - a;
   precise float height = normal.x * to_light.x + normal.y * to_light.y + normal.z * to_light.z;
