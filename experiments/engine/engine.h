@@ -168,6 +168,9 @@ const TechniqueDescription& technique_of_family(const std::string& family);
 /// Whether it is the technique of family `none`, which times are compared with.
 bool is_baseline(const Run& run);
 
+/// Names what runs share of a scene whose truth and time of `none` are one.
+std::string view_of(const Run& run);
+
 /// A technique with parameters as people write it, ID[:NAME=VALUE]..., for every run of it.
 /// Throws bad_value and not_found as techniques::resolve does.
 struct NamedTechnique {
