@@ -65,9 +65,10 @@ class EmbreeProgram {
   EmbreeProgram& operator=(const EmbreeProgram&) = delete;
 
   std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size) const;
-  /// Rays that reach one of `points`, of all from `receivers`, on all cores.
+  /// Rays that reach one of `points`, of all from `receivers`, on all cores; `w` of the points: 1
+  /// for places, 0 for directions.
   std::uint64_t count_lit(const std::vector<Receiver>& receivers, const std::vector<Packet>& points,
-                          bool directional) const;
+                          float w) const;
 
  private:
   RTCScene add(const GpuScene& scene, bool casters_only);
@@ -130,11 +131,11 @@ std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera,
 
 /// Eight rays of one receiver. Those to points behind its facet are hidden.
 std::uint32_t lit_of_packet(RTCScene scene, RTCIntersectContext& context, const Receiver& receiver,
-                            const Packet& points, bool directional) {
+                            const Packet& points, float w) {
   alignas(32) RTCRay8 rays;
   alignas(32) int valid[8];
-  const glm::vec3 from = directional ? glm::vec3(0.0f) : receiver.origin;
-  const float far = directional ? std::numeric_limits<float>::infinity() : 1.0f;
+  const glm::vec3 from = w * receiver.origin;
+  const float far = 1.0f / w;
   for (int i = 0; i < 8; ++i) {
     rays.org_x[i] = receiver.origin.x;
     rays.org_y[i] = receiver.origin.y;
@@ -159,7 +160,7 @@ std::uint32_t lit_of_packet(RTCScene scene, RTCIntersectContext& context, const 
 }
 
 std::uint64_t EmbreeProgram::count_lit(const std::vector<Receiver>& receivers,
-                                       const std::vector<Packet>& points, bool directional) const {
+                                       const std::vector<Packet>& points, float w) const {
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> lit{0};
   const auto work = [&] {
@@ -172,7 +173,7 @@ std::uint64_t EmbreeProgram::count_lit(const std::vector<Receiver>& receivers,
          first = next.fetch_add(chunk))
       for (std::size_t r = first; r < std::min(first + chunk, receivers.size()); ++r)
         for (const Packet& packet : points)
-          found += lit_of_packet(casters_, context, receivers[r], packet, directional);
+          found += lit_of_packet(casters_, context, receivers[r], packet, w);
     lit += found;
   };
   std::vector<std::thread> threads;
@@ -220,7 +221,7 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
     for (const Light& light : scene->lights) {
       const WorldLight world = world_light(light, gpu.origin());
       lit += embree.count_lit(receivers, packets_of(light_points(world, samples, 1, 1, false)),
-                              light.kind == LightKind::directional);
+                              static_cast<float>(world.center.w));
     }
     timing.embree.push_back(ms_since(start));
   }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "renderer/scene/light.h"
 #include "scenes/document.h"
 #include "scenes/json_reader.h"
 #include "scenes/json_text.h"
@@ -9,15 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::pair<const char*, LightKind>> light_kinds = {
-    {"spot", LightKind::spot},
-    {"directional", LightKind::directional},
-    {"point", LightKind::point}};
-const std::vector<std::pair<const char*, ExtentKind>> extent_kinds = {
-    {"none", ExtentKind::none},
-    {"sphere", ExtentKind::sphere},
-    {"disc", ExtentKind::disc},
-    {"rectangle", ExtentKind::rectangle}};
 const std::vector<std::pair<const char*, Attenuation>> attenuations = {
     {"none", Attenuation::none}, {"inverse_square", Attenuation::inverse_square}};
 const std::vector<std::pair<const char*, Projection>> projections = {
@@ -38,7 +30,7 @@ bool independent(const glm::dvec3& a, const glm::dvec3& b) {
 
 void read_extent(const json& value, const std::string& path, LightExtent& extent) {
   JsonReader reader(value, path);
-  reader.choice("kind", extent.kind, extent_kinds);
+  reader.choice("kind", extent.kind, extent_kinds());
   reader.number("radius", extent.radius, 0.0, 1e9);
   reader.vector("size", extent.size, 0.0, 1e9);
   reader.finish();
@@ -48,7 +40,7 @@ void read_extent(const json& value, const std::string& path, LightExtent& extent
 
 json write_light(const Light& light) {
   return {{"name", light.name},
-          {"kind", name_of(light_kinds, light.kind)},
+          {"kind", name_of(light_kinds(), light.kind)},
           {"position", json_list(light.position)},
           {"direction", json_list(light.direction)},
           {"up", json_list(light.up)},
@@ -59,7 +51,7 @@ json write_light(const Light& light) {
           {"outer_angle", light.outer_angle},
           {"range", light.range},
           {"extent",
-           {{"kind", name_of(extent_kinds, light.extent.kind)},
+           {{"kind", name_of(extent_kinds(), light.extent.kind)},
             {"radius", light.extent.radius},
             {"size", json_list(light.extent.size)}}}};
 }
@@ -67,7 +59,7 @@ json write_light(const Light& light) {
 void read_light(const json& value, const std::string& path, Light& light) {
   JsonReader reader(value, path);
   reader.text("name", light.name);
-  reader.choice("kind", light.kind, light_kinds);
+  reader.choice("kind", light.kind, light_kinds());
   reader.vector("position", light.position, -max_coordinate, max_coordinate);
   if (reader.has("direction") && reader.has("target"))
     reader.fail("target", "and direction exclude each other");
@@ -98,8 +90,7 @@ void read_light(const json& value, const std::string& path, Light& light) {
   reader.number("range", light.range, 0.0, max_coordinate);
   if (reader.has("extent"))
     read_extent(reader.at("extent"), reader.path_of("extent"), light.extent);
-  if (light.kind == LightKind::directional &&
-      !(light.extent.radius < 90.0 && light.extent.size.x < 180.0 && light.extent.size.y < 180.0))
+  if (!is_extent_valid(light))
     reader.fail("extent", "of a directional light is in degrees and stays within half of the sky");
   reader.finish();
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "renderer/error.h"
+#include "renderer/scene/light.h"
 #include "scenes/document.h"
 #include "scenes/json_text.h"
 #include "scenes/picture_io.h"
@@ -125,15 +126,14 @@ json looking(const glm::dvec3& position, const glm::dvec3& direction, const glm:
 }
 
 json gltf_light(const Light& light) {
-  static const char* const types[] = {"spot", "directional", "point"};
   json value = {{"name", light.name},
-                {"type", types[static_cast<int>(light.kind)]},
+                {"type", name_of(light.kind)},
                 {"color", json_list(glm::min(light.color, glm::vec3(1.0f)))},
                 {"intensity", light.intensity}};
-  if (light.range > 0.0 && light.kind != LightKind::directional) value["range"] = light.range;
-  if (light.kind == LightKind::spot)
-    value["spot"] = {{"innerConeAngle", radians * light.inner_angle * 0.9999},
-                     {"outerConeAngle", radians * light.outer_angle}};
+  if (range_of(light) > 0.0) value["range"] = range_of(light);
+  if (const auto cone = cone_of(light))
+    value["spot"] = {{"innerConeAngle", radians * cone->inner_angle * 0.9999},
+                     {"outerConeAngle", radians * cone->outer_angle}};
   return value;
 }
 

@@ -17,10 +17,8 @@ std::vector<LayoutRow> layout_matrix() {
     LayoutRow row{technique.id, {}};
     for (const shadow_maps::Layout& layout : shadow_maps::layouts()) {
       std::vector<std::string>& lights = row.lights[layout.id];
-      for (const auto& [kind, name] : {std::pair{LightKind::spot, "spot"},
-                                       {LightKind::directional, "directional"},
-                                       {LightKind::point, "point"}})
-        if (layout.refusal(kind).empty()) lights.emplace_back(name);
+      for (const auto& [name, kind] : light_kinds())
+        if (shadow_maps::serves(layout, kind)) lights.emplace_back(name);
     }
     rows.push_back(row);
   }

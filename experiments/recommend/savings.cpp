@@ -5,6 +5,7 @@
 
 #include "experiments/report/rows.h"
 #include "renderer/plan/plan.h"
+#include "renderer/scene/light.h"
 
 namespace penumbra::experiments::recommend {
 namespace {
@@ -63,7 +64,7 @@ void add_smaller_maps(json& list, const Run& pick, const Before& before,
 void add_hard_lights(json& list, const Scene& scene, const Run& pick, const Before& before,
                      const std::function<json(const Run&)>& measure) {
   for (const Light& light : scene.lights) {
-    if (light.extent.kind == ExtentKind::none) continue;
+    if (!has_extent(light)) continue;
     Run run = pick;
     run.hard_lights = {light.name};
     run.name = pick.name + ", " + light.name + " hard";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "renderer/scene/light.h"
 #include "scenes/generators/scene_builder.h"
 
 namespace penumbra::experiments::stability {
@@ -149,11 +150,7 @@ Scene moved(Scene scene, double factor, double degrees, const glm::dvec3& offset
     light.position = place(light.position);
     light.direction = glm::normalize(way(light.direction));
     light.up = way(light.up);
-    light.range *= factor;
-    if (light.kind != LightKind::directional) {
-      light.extent.radius *= factor;
-      light.extent.size *= factor;
-    }
+    scale_lengths(light, factor);
   }
   for (Camera& camera : scene.cameras) {
     camera.position = place(camera.position);

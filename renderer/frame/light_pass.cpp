@@ -40,8 +40,7 @@ void LightPass::choose_points(PointRange round) {
   if (round == round_) return;
   round_ = round;
   if (needs_.light_points <= 1) {
-    const bool directional = light_.kind == LightKind::directional;
-    points_.assign(sets_, glm::vec4(directional ? -light_.direction : light_.position, 0.0));
+    points_.assign(sets_, glm::vec4(glm::dvec3(light_.center), 0.0));
     return;
   }
   const auto make = [&](std::uint32_t all, PointRange part) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "renderer/scene/convex_clip.h"
-#include "renderer/scene/light_points.h"
+#include "renderer/scene/light.h"
 #include "renderer/scene/transforms.h"
 
 namespace penumbra {
@@ -23,10 +23,6 @@ struct View {
   std::vector<glm::dvec3> corners;
 };
 
-HalfSpace half_space(const glm::dvec3& inwards, const glm::dvec3& through) {
-  return {inwards, -glm::dot(inwards, through)};
-}
-
 View view_of(const CameraMatrices& camera) {
   View view;
   const auto sides = side_planes(camera.clip_from_world);
@@ -36,106 +32,6 @@ View view_of(const CameraMatrices& camera) {
   view.corners.assign(corners.begin(), corners.end());
   return view;
 }
-
-/// Box around the part of `box` inside convex `sides` whose own corners are given; may be empty.
-Bounds common_part(const Bounds& box, std::span<const HalfSpace> sides,
-                   std::span<const glm::dvec3> corners) {
-  Bounds part;
-  visit_clipped_corners(box, sides, [&](const glm::dvec3& point) { part.add(point); });
-  for (const glm::dvec3& corner : corners)
-    if (contains(box, corner)) part.add(corner);
-  return part;
-}
-
-/// One light's geometry: where it is, and what its cone encloses.
-class LightReach {
- public:
-  explicit LightReach(const Light& light) : light_(light) {
-    direction_ = glm::normalize(light.direction);
-    radius_ = extent_radius(light);
-  }
-
-  bool shines() const {
-    return light_.intensity > 0.0f &&
-           std::max({light_.color.r, light_.color.g, light_.color.b}) > 0.0f;
-  }
-
-  /// Box around what the light reaches within `box`.
-  Bounds lit(const Bounds& box) const {
-    if (light_.kind == LightKind::directional) return box;
-    if (light_.range > 0.0) {
-      const glm::dvec3 nearest = glm::clamp(light_.position, box.low, box.high);
-      if (glm::length(nearest - light_.position) > light_.range + radius_) return {};
-    }
-    if (light_.kind == LightKind::point) return box;
-    // The pyramid around all cones that begin on the extent, as seen from behind the light.
-    const double tangent = std::tan(glm::radians(light_.outer_angle));
-    const glm::dvec3 tip =
-        light_.position - direction_ * radius_ * std::sqrt(1.0 + 1.0 / (tangent * tangent));
-    return common_part(box, pyramid(tip, tangent), {&tip, 1});
-  }
-
-  /// Whether something within `caster` may stand between the light and something within `lit`.
-  /// Light and lit box span the hull of all boxes (1 - t) light + t lit, 0 <= t <= 1.
-  bool may_shadow(const Bounds& caster, const Bounds& lit) const {
-    const bool directional = light_.kind == LightKind::directional;
-    // Where the hull begins and how its box grows along it.
-    const Bounds start =
-        directional ? lit : Bounds{light_.position - radius_, light_.position + radius_};
-    const glm::dvec3 low_step = directional ? -direction_ - radius_ : lit.low - start.low;
-    const glm::dvec3 high_step = directional ? -direction_ + radius_ : lit.high - start.high;
-    double first = 0.0;
-    double last = directional ? infinity : 1.0;
-    // Keeps the t for which value + t * step <= limit.
-    const auto restrict = [&](double value, double step, double limit) {
-      const double room = limit - value;
-      if (step > 0.0) last = std::min(last, room / step);
-      if (step < 0.0) first = std::max(first, room / step);
-      if (step == 0.0 && room < 0.0) last = -infinity;
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-      restrict(start.low[axis], low_step[axis], caster.high[axis]);
-      restrict(-start.high[axis], -high_step[axis], -caster.low[axis]);
-    }
-    return first <= last;
-  }
-
-  /// Distances of a box's nearest and farthest point: along the light's axis where it has one, from
-  /// the light's own place or, directional, from the scene's origin; metres.
-  glm::dvec2 distances(const Bounds& box) const {
-    if (light_.kind == LightKind::point) {
-      const glm::dvec3 nearest = glm::clamp(light_.position, box.low, box.high);
-      const glm::dvec3 reach = glm::abs(box.center() - light_.position) + 0.5 * box.size();
-      return {glm::length(nearest - light_.position), glm::length(reach)};
-    }
-    const bool directional = light_.kind == LightKind::directional;
-    const glm::dvec3 from = directional ? glm::dvec3(0.0) : light_.position;
-    const double middle = glm::dot(box.center() - from, direction_);
-    const double half = 0.5 * glm::dot(box.size(), glm::abs(direction_));
-    return {directional ? middle - half : std::max(middle - half, 0.0), middle + half};
-  }
-
-  /// Whether filters that mix neighbouring directions may read it.
-  bool in_filtered_cone(const Bounds& caster) const {
-    if (light_.kind != LightKind::spot) return true;
-    const double tangent = widest_filtered_cone * std::tan(glm::radians(light_.outer_angle));
-    return may_touch(caster, pyramid(light_.position, tangent));
-  }
-
- private:
-  std::vector<HalfSpace> pyramid(const glm::dvec3& tip, double tangent) const {
-    const glm::dvec3 up = across(direction_, light_.up);
-    const glm::dvec3 right = glm::cross(direction_, up);
-    std::vector<HalfSpace> sides;
-    for (const glm::dvec3& axis : {right, -right, up, -up})
-      sides.push_back(half_space(tangent * direction_ + axis, tip));
-    return sides;
-  }
-
-  const Light& light_;
-  glm::dvec3 direction_;
-  double radius_;
-};
 
 std::uint64_t geometry_bytes(const Mesh& mesh) {
   return mesh.positions.size() * vertex_bytes + mesh.indices.size() * sizeof(std::uint32_t);
@@ -209,7 +105,7 @@ class Planner {
     LightFit fit;
     fit.receivers = lit;
     for (std::size_t i = 0; i < boxes_.size(); ++i)
-      if (scene_.instances[i].casts_shadow && reach.in_filtered_cone(boxes_[i]))
+      if (scene_.instances[i].casts_shadow && reach.may_touch_cone(boxes_[i], widest_filtered_cone))
         fit.casters.push_back(boxes_[i]);
     return fit;
   }
@@ -242,7 +138,7 @@ class Planner {
              const std::vector<Bounds>& lit) const {
     if (needs.casters == CasterUse::none) return false;
     if (!rules_.casters || needs.casters == CasterUse::all) return true;
-    if (needs.casters == CasterUse::cone) return reach.in_filtered_cone(caster);
+    if (needs.casters == CasterUse::cone) return reach.may_touch_cone(caster, widest_filtered_cone);
     return std::any_of(lit.begin(), lit.end(),
                        [&](const Bounds& part) { return reach.may_shadow(caster, part); });
   }
@@ -307,7 +203,7 @@ class Planner {
       const Light& light = scene_.lights[l];
       if (!plan_.lights[l]) continue;
       const std::uint32_t points = plan_.needs[l].light_points;
-      const bool hard = light.extent.kind == ExtentKind::none;
+      const bool hard = !has_extent(light);
       line("extent", light.name, points > 1,
            hard         ? "has no extent: hard shadows, one point"
            : points > 1 ? std::to_string(points) + " points on its extent, one by one"

@@ -9,7 +9,6 @@
 #include "renderer/shaders/light_points.glsl"
 #include "renderer/shaders/sample_list.glsl"
 
-layout(std140) uniform LightBlock { LightData light; };
 layout(std140) uniform ShaftBlock { ShaftData shaft_data; };
 
 uniform sampler2D geometry_position;
@@ -40,21 +39,6 @@ uint hidden_by(TrianglePlanes t) {
   ALL_POINTS(HIDDEN)
 #undef HIDDEN
   return mask;
-}
-
-// No light comes here from any point of the batch, nor from the centre: the answer would not be read.
-bool outside_light(vec3 x) {
-  if (int(light.position.w) == light_kind_directional) return false;
-  vec3 offset = x - light.position.xyz;
-  float radius = shaft_data.whole_low.w;
-  if (light.direction.w > 0.0 && length(offset) - radius > light.direction.w) return true;
-  if (int(light.position.w) != light_kind_spot) return false;
-  // Distance to the cone's mantle around the centre; a point's own cone is moved by radius at most.
-  // From kilometres away neither squares of distances nor the cosine of so narrow a cone tell enough.
-  float along = dot(offset, light.direction.xyz);
-  float across = length(cross(offset, light.direction.xyz));
-  float sine = sqrt(light.up.w * (2.0 - light.up.w));
-  return across * light.cone.y - along * sine > radius + 1e-4 * (length(offset) + radius);
 }
 
 #ifdef WITH_HOLES
@@ -267,7 +251,7 @@ void main() {
   vec3 normal = unpack_unit_vector(words.y);
   float reach = length(position.xyz) + length(position.xyz - frame.camera_position.xyz);
   vec3 origin = position.xyz + shaft_data.box_high.w * reach * normal;
-  bool unread = !inside || position.w == 0.0 || outside_light(position.xyz);
+  bool unread = !inside || position.w == 0.0 || is_outside_light(position.xyz, shaft_data.whole_low.w);
 #ifdef FIND_CANDIDATES
   Shaft shaft = make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w);
   // What the shading normal is turned from is not lit, whatever the facet sees.

@@ -23,23 +23,20 @@ struct ExtentBox {
 
 /// Box around the whole extent: positions, or directions of any length.
 ExtentBox extent_box(const WorldLight& light) {
-  const bool directional = light.kind == LightKind::directional;
   const glm::dvec3 half = extent_half_size(*light.source);
   const glm::dvec3 reach = glm::abs(light.right) * half.x + glm::abs(light.up) * half.y +
                            glm::abs(light.direction) * half.z;
-  const glm::dvec3 middle = directional ? -light.direction : light.position;
+  const glm::dvec3 middle(light.center);
   return {middle - reach, middle + reach};
 }
 
-/// Widens a box by what rounding of points and receivers may do.
-void widen(ExtentBox& box, bool directional, const GpuScene& scene) {
-  double reach = 1.0;
-  if (!directional) {
-    const glm::dvec3 far =
-        glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
-                 glm::dvec3(glm::max(glm::abs(scene.low()), glm::abs(scene.high()))));
-    reach = std::max({far.x, far.y, far.z});
-  }
+/// Widens a box by what rounding of points and receivers may do: that grows with their coordinates,
+/// or is that of unit directions at infinity, where `w` of the light's centre is 0.
+void widen(ExtentBox& box, double w, const GpuScene& scene) {
+  const glm::dvec3 far =
+      glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
+               glm::dvec3(glm::max(glm::abs(scene.low()), glm::abs(scene.high()))));
+  const double reach = glm::mix(1.0, std::max({far.x, far.y, far.z}), w);
   box.low -= 1e-6 * reach;
   box.high += 1e-6 * reach;
 }
@@ -63,7 +60,6 @@ std::span<const glm::vec4> points_of(const PrepareContext& context, std::uint32_
 /// For the points of one sample of a pixel.
 shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   shader::ShaftData data{};
-  const bool directional = context.light.kind == LightKind::directional;
   const auto points = points_of(context, set);
   ExtentBox batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
   for (std::uint32_t i = 0; i < context.points_in_batch; ++i) {
@@ -71,9 +67,9 @@ shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
     batch.high = glm::max(batch.high, glm::dvec3(points[i]));
   }
   ExtentBox whole = extent_box(context.light);
-  widen(batch, directional, context.scene);
-  widen(whole, directional, context.scene);
-  data.box_low = glm::vec4(batch.low, directional ? 0.0 : 1.0);
+  widen(batch, context.light.center.w, context.scene);
+  widen(whole, context.light.center.w, context.scene);
+  data.box_low = glm::vec4(batch.low, context.light.center.w);
   data.box_high = glm::vec4(batch.high, offset_in(context.geometry));
   data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
   data.whole_high = glm::vec4(whole.high, 0.0);

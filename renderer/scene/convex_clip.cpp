@@ -35,6 +35,15 @@ void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
   }
 }
 
+Bounds common_part(const Bounds& box, std::span<const HalfSpace> sides,
+                   std::span<const glm::dvec3> corners) {
+  Bounds part;
+  visit_clipped_corners(box, sides, [&](const glm::dvec3& point) { part.add(point); });
+  for (const glm::dvec3& corner : corners)
+    if (contains(box, corner)) part.add(corner);
+  return part;
+}
+
 std::vector<glm::dvec3> body_corners(std::span<const HalfSpace> sides) {
   std::vector<HalfSpace> unit;
   for (const HalfSpace& side : sides) unit.push_back(side / glm::length(glm::dvec3(side)));

@@ -21,6 +21,10 @@ std::vector<glm::dvec3> clip(const std::vector<glm::dvec3>& polygon, const HalfS
 void visit_clipped_corners(const Bounds& box, std::span<const HalfSpace> sides,
                            const std::function<void(const glm::dvec3&)>& visit);
 
+/// Box around the part of `box` inside convex `sides` whose own corners are given; may be empty.
+Bounds common_part(const Bounds& box, std::span<const HalfSpace> sides,
+                   std::span<const glm::dvec3> corners);
+
 /// Corners of the body that half-spaces enclose; those at infinity are left out. By trying every
 /// three of them: for tens, not for hundreds.
 std::vector<glm::dvec3> body_corners(std::span<const HalfSpace> sides);

@@ -3,19 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <random>
-
-#include "renderer/scene/transforms.h"
 
 namespace penumbra {
 namespace {
-
-/// 1 - cos, which a float of the cosine loses at small angles.
-double versine(double degrees) {
-  const double sine = std::sin(0.5 * glm::radians(degrees));
-  return 2.0 * sine * sine;
-}
 
 std::uint64_t mix(std::uint64_t x) {  // splitmix64's finaliser (Steele et al. 2014)
   x += 0x9e3779b97f4a7c15ull;
@@ -70,97 +61,11 @@ double unit(std::uint32_t bits) {
   return (bits + 0.5) * 0x1p-32;
 }
 
-/// Concentric map of the square onto the unit disc (Shirley and Chiu 1997).
-glm::dvec2 disc(double u, double v) {
-  const double a = 2.0 * u - 1.0;
-  const double b = 2.0 * v - 1.0;
-  if (a == 0.0 && b == 0.0) return {0.0, 0.0};
-  const double quarter = glm::pi<double>() / 4.0;
-  if (std::abs(a) > std::abs(b))
-    return a * glm::dvec2(std::cos(quarter * b / a), std::sin(quarter * b / a));
-  return b * glm::dvec2(std::cos(2.0 * quarter - quarter * a / b),
-                        std::sin(2.0 * quarter - quarter * a / b));
-}
-
 std::uint32_t spread(std::uint32_t x) {  // 16 bits to the even places
   std::uint32_t r = 0;
   for (int i = 0; i < 16; ++i) r |= (x >> i & 1u) << (2 * i);
   return r;
 }
-
-/// Offset from the centre along (right, up, direction) for a point of the unit cube; metres, or
-/// tangents of the angle when directional.
-glm::dvec3 extent_offset(const Light& light, const glm::dvec3& u) {
-  const glm::dvec3 half = extent_half_size(light);
-  if (light.extent.kind == ExtentKind::rectangle)
-    return half * glm::dvec3(2.0 * u.x - 1.0, 2.0 * u.y - 1.0, 0.0);
-  if (half.z == 0.0) return half.x * glm::dvec3(disc(u.x, u.y), 0.0);
-  const double z = 2.0 * u.y - 1.0;
-  const double ring = std::sqrt(std::max(0.0, 1.0 - z * z));
-  const double phi = 2.0 * glm::pi<double>() * u.x;
-  return half.x * std::cbrt(u.z) * glm::dvec3(ring * std::cos(phi), ring * std::sin(phi), z);
-}
-
-}  // namespace
-
-WorldLight world_light(const Light& light, const glm::dvec3& origin) {
-  WorldLight world;
-  world.kind = light.kind;
-  world.position = light.position - origin;
-  world.direction = glm::normalize(light.direction);
-  world.up = across(world.direction, light.up);
-  world.right = glm::cross(world.direction, world.up);
-  world.source = &light;
-  return world;
-}
-
-glm::dvec3 extent_half_size(const Light& light) {
-  const bool directional = light.kind == LightKind::directional;
-  const auto length = [&](double x) { return directional ? std::tan(glm::radians(x)) : x; };
-  const double radius = length(light.extent.radius);
-  switch (light.extent.kind) {
-    case ExtentKind::sphere:
-      // Seen from far away the ball is a disc.
-      return {radius, radius, directional ? 0.0 : radius};
-    case ExtentKind::disc:
-      return {radius, radius, 0.0};
-    case ExtentKind::rectangle:
-      return {length(0.5 * light.extent.size.x), length(0.5 * light.extent.size.y), 0.0};
-    case ExtentKind::none:
-      break;
-  }
-  return glm::dvec3(0.0);
-}
-
-double extent_radius(const Light& light) {
-  const glm::dvec3 half = extent_half_size(light);
-  return light.extent.kind == ExtentKind::rectangle ? glm::length(half) : half.x;
-}
-
-shader::LightData light_data(const WorldLight& world, float points, float weight) {
-  const Light& light = *world.source;
-  const glm::dvec3 half = extent_half_size(light);
-  shader::LightData data{};
-  data.position =
-      glm::vec4(world.position, static_cast<float>(world.kind == LightKind::spot          ? 0
-                                                   : world.kind == LightKind::directional ? 1
-                                                                                          : 2));
-  data.direction = glm::vec4(world.direction, light.range);
-  data.color = glm::vec4(light.color * light.intensity,
-                         light.attenuation == Attenuation::inverse_square ? 1.0f : 0.0f);
-  data.cone = {std::cos(glm::radians(light.inner_angle)), std::cos(glm::radians(light.outer_angle)),
-               points, weight};
-  // A line of light is drawn as a thin strip: shaders divide by both sides.
-  const double thinnest =
-      light.extent.kind == ExtentKind::rectangle ? 1e-4 * std::max(half.x, half.y) : 0.0;
-  data.extent = {static_cast<float>(light.extent.kind), std::max(half.x, thinnest),
-                 std::max(half.y, thinnest), 0.0f};
-  data.right = glm::vec4(world.right, versine(light.inner_angle));
-  data.up = glm::vec4(world.up, versine(light.outer_angle));
-  return data;
-}
-
-namespace {
 
 /// Points of the unit cube: one scramble of one sequence, or random ones.
 class PointSource {
@@ -202,7 +107,6 @@ std::uint32_t morton_code(const glm::dvec3& u) {
 std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count,
                                     std::uint32_t sets, std::uint64_t seed, bool random,
                                     std::uint32_t scrambles, std::optional<PointRange> part) {
-  const bool directional = light.kind == LightKind::directional;
   const PointRange wanted = part.value_or(PointRange{0, count});
   const std::uint32_t all = count / scrambles;
   const std::uint32_t each = wanted.count / scrambles;
@@ -221,11 +125,8 @@ std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count
       std::stable_sort(ordered.begin(), ordered.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
       for (std::uint32_t i = 0; i < each; ++i) {
-        const glm::dvec3& offset = ordered[i].second;
-        const glm::dvec3 moved =
-            offset.x * light.right + offset.y * light.up + offset.z * light.direction;
-        points[(std::size_t{set} * each + i) * scrambles + scramble] = glm::vec4(
-            directional ? glm::normalize(moved - light.direction) : light.position + moved, 0.0);
+        points[(std::size_t{set} * each + i) * scrambles + scramble] =
+            glm::vec4(light.extent_point(ordered[i].second), 0.0);
       }
     }
   }

@@ -5,25 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/scene/scene.h"
-#include "renderer/shaders/shader_types.h"
+#include "renderer/scene/light.h"
 
 namespace penumbra {
-
-/// A light in the renderer's world space.
-struct WorldLight {
-  LightKind kind = LightKind::spot;
-  glm::dvec3 position{0.0};
-  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit, into the scene
-  glm::dvec3 right{1.0, 0.0, 0.0};       ///< unit, along a rectangle's width
-  glm::dvec3 up{0.0, 0.0, 1.0};          ///< unit, along its height
-  const Light* source = nullptr;
-};
-
-WorldLight world_light(const Light& light, const glm::dvec3& origin);
-
-/// As shaders see it; `points` in the batch and `weight` of the batch are the caller's.
-shader::LightData light_data(const WorldLight& light, float points, float weight);
 
 /// Points on (sphere: in) the light's extent, uniform over its area, disc or ball: positions, or
 /// unit directions towards a directional light. `count` points for each of `sets` samples of a
@@ -47,12 +31,5 @@ std::vector<glm::vec4> light_points(const WorldLight& light, std::uint32_t count
                                     std::uint32_t sets, std::uint64_t seed, bool random,
                                     std::uint32_t scrambles = 1,
                                     std::optional<PointRange> part = {});
-
-/// Corners of a box around the extent in the light's own axes: half sizes along right, up,
-/// direction; metres, or tangents of the angle for a directional light.
-glm::dvec3 extent_half_size(const Light& light);
-
-/// Radius of the sphere around the extent's centre that holds all of it, likewise.
-double extent_radius(const Light& light);
 
 }  // namespace penumbra

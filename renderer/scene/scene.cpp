@@ -5,6 +5,7 @@
 #include <set>
 
 #include "renderer/error.h"
+#include "renderer/scene/light.h"
 
 namespace penumbra {
 namespace {
@@ -118,9 +119,8 @@ void validate_light(const Light& light, const std::string& where) {
         "extent.radius must be finite and >= 0");
   check(finite(extent.size) && extent.size.x >= 0.0 && extent.size.y >= 0.0, where,
         "extent.size must be finite and >= 0");
-  if (light.kind == LightKind::directional)
-    check(extent.radius < 90.0 && extent.size.x < 180.0 && extent.size.y < 180.0, where,
-          "extent of a directional light must stay within its half of the sky");
+  check(is_extent_valid(light), where,
+        "extent of a directional light must stay within its half of the sky");
 }
 
 void validate_shadow_plane(const Scene& scene, const ShadowPlane& plane, const std::string& where) {

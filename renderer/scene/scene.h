@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/shaders/shader_types.h"
+
 namespace penumbra {
 
 /// Axis-aligned box in world space, metres. Empty while low > high.
@@ -76,8 +78,18 @@ struct Instance {
   bool casts_shadow = true;
 };
 
-enum class LightKind { spot, directional, point };
-enum class ExtentKind { none, sphere, disc, rectangle };
+/// What only light.h and light.glsl ask about.
+enum class LightKind {
+  spot = shader::light_kind_spot,
+  directional = shader::light_kind_directional,
+  point = shader::light_kind_point
+};
+enum class ExtentKind {
+  none = shader::extent_kind_none,
+  sphere = shader::extent_kind_sphere,
+  disc = shader::extent_kind_disc,
+  rectangle = shader::extent_kind_rectangle
+};
 
 /// What makes a light cast penumbrae. For directional lights sizes are degrees of angle as seen
 /// from the scene (the sun: disc, 0.53), for the others metres.

@@ -14,7 +14,7 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
-  Illumination from_center = illuminate(light, light_center(), surface.position);
+  Illumination from_center = illuminate(light_center(), surface.position);
   vec4 mean = texelFetch(light_sum, texel, 0);
   out_radiance = vec4(mean.rgb, 0.0);
 #ifdef WITH_VISIBILITY

@@ -13,15 +13,8 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
-  vec3 center = int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
-  Illumination incoming = illuminate(light, center, surface.position);
-  ShadowQuery query;
-  query.position = surface.position;
-  query.normal = surface.geometric_normal;
-  query.shading_normal = surface.shading_normal;
-  query.to_light = incoming.to_light;
-  query.light_distance = incoming.distance;
-  query.pixel = gl_FragCoord.xy;
-  query.point = position.w == 0.0 ? -1 : 0;  // -1: background
+  Illumination incoming = illuminate(light_center(), surface.position);
+  int point = position.w == 0.0 ? -1 : 0;  // -1: background
+  ShadowQuery query = make_query(surface, incoming, gl_FragCoord.xy, point);
   out_color = DRAW_DIAGNOSTIC(query, (gl_FragCoord.xy + frame.window.xy) / frame.window.zw);
 }

@@ -3,45 +3,7 @@
 #define PENUMBRA_LIGHTING_GLSL
 #include "renderer/shaders/frame.glsl"
 #include "renderer/shaders/geometry_buffer.glsl"
-
-// dot(a, b) in three operations: drivers that keep to IEEE 754 may not fuse those of dot themselves.
-float fused_dot(vec3 a, vec3 b) { return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)); }
-
-// 1 - cosine of an angle of 2 degrees.
-const float narrow_cone = 6e-4;
-
-struct Illumination {
-  vec3 to_light;   // unit
-  float distance;  // m; for directional lights a distance beyond the scene
-  float strength;  // cone, attenuation and range; 0 outside
-};
-
-// From `point` on the light: its position, or the direction to it when directional. Without branches:
-// a driver that runs lanes in step executes both sides anyway, and keeps what they share in memory.
-Illumination illuminate(LightData light, vec3 point, vec3 position) {
-  bool directional = int(light.position.w) == light_kind_directional;
-  vec3 offset = mix(point - position, point, bvec3(directional));
-  float squared = fused_dot(offset, offset);
-  float inverse = inversesqrt(max(squared, 1e-30));
-  Illumination result;
-  result.to_light = mix(-light.direction.xyz, offset * inverse, bvec3(squared > 0.0));
-  result.distance = mix(squared * inverse, 1e30, directional);
-  bool attenuated = light.color.w > 0.5 && !directional;
-  result.strength = mix(1.0, min(inverse * inverse, 1e12), attenuated);
-  // As smoothstep, with a division that all points share.
-  float cosine = -fused_dot(result.to_light, light.direction.xyz);
-  float t = clamp((cosine - light.cone.y) * (1.0 / max(light.cone.x - light.cone.y, 1e-6)), 0.0, 1.0);
-  // A narrow cone's cosines are equal as floats: the distance of two unit vectors is not.
-  vec3 aside = result.to_light + light.direction.xyz;
-  float versine = 0.5 * fused_dot(aside, aside);
-  float narrow = clamp((light.up.w - versine) / max(light.up.w - light.right.w, 1e-6 * light.up.w), 0.0, 1.0);
-  t = mix(t, narrow, light.up.w < narrow_cone && light.up.w > 0.0);
-  bool spot = int(light.position.w) == light_kind_spot;
-  result.strength *= mix(1.0, t * t * fma(-2.0, t, 3.0), spot);
-  bool beyond = light.direction.w > 0.0 && !directional && result.distance > light.direction.w;
-  result.strength = mix(result.strength, 0.0, beyond);
-  return result;
-}
+#include "renderer/shaders/light.glsl"
 
 // Unit.
 vec3 direction_to_viewer(vec3 position) {

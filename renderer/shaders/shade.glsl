@@ -16,7 +16,7 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(geometry_position, texel, 0);
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
-  Illumination incoming = illuminate(light, light_center(), surface.position);
+  Illumination incoming = illuminate(light_center(), surface.position);
   bool judged = is_judged(surface, incoming);
   vec3 radiance = vec3(0.0);
   float visible = 0.0;

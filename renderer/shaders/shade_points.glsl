@@ -28,7 +28,7 @@ void main() {
 #define LIGHT_OF_POINT visibility * incoming.strength * reflected_shares(surface, to_viewer, incoming.to_light)
 #define ADD_LIGHT(k, share) shares += share; ADD_BRIGHTNESS(k, dot(brightness, share))
 #else
-  vec3 unshadowed = reflect_light(light, illuminate(light, light_center(), surface.position), surface);
+  vec3 unshadowed = reflect_light(light, illuminate(light_center(), surface.position), surface);
   float brightness = luminance(unshadowed);
 #define LIGHT_OF_POINT vec2(visibility)
 #define ADD_LIGHT(k, share) ADD_BRIGHTNESS(k, brightness * share.x)
@@ -42,7 +42,7 @@ void main() {
 #endif
 #define ADD_POINT(i)                                                                         \
   {                                                                                          \
-    Illumination incoming = illuminate(light, light_points[i].xyz, surface.position);        \
+    Illumination incoming = illuminate(light_points[i].xyz, surface.position);               \
     float visibility = calculate_shadow(make_query(surface, incoming, pixel, (i)));          \
     visibility = mix(0.0, visibility, float(i) < light.cone.z);                              \
     seen += visibility;                                                                      \

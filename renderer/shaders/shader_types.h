@@ -24,6 +24,10 @@ PENUMBRA_CONSTANT int max_supersampling = 16;
 PENUMBRA_CONSTANT int light_kind_spot = 0;
 PENUMBRA_CONSTANT int light_kind_directional = 1;
 PENUMBRA_CONSTANT int light_kind_point = 2;
+PENUMBRA_CONSTANT int extent_kind_none = 0;
+PENUMBRA_CONSTANT int extent_kind_sphere = 1;
+PENUMBRA_CONSTANT int extent_kind_disc = 2;
+PENUMBRA_CONSTANT int extent_kind_rectangle = 3;
 
 /// Constants of a frame. World space is the scene's, moved by SceneFrame::origin: offsets of 1e7 m
 /// cost no precision.
@@ -46,8 +50,8 @@ struct LightData {
   vec4 color;      // rgb colour times intensity, w 1 for inverse-square attenuation
   vec4 cone;  // x cosine of inner angle, y cosine of outer angle, z points in this batch, w weight
               // of a point
-  vec4 extent;  // x kind (0 none, 1 sphere, 2 disc, 3 rectangle), y radius or half width, z half
-                // height; m, or tangents of the angle when directional
+  vec4 extent;  // x kind, y radius or half width, z half height; m, or tangents of the angle when
+                // directional
   vec4 right;   // xyz unit, along a rectangle's width; w 1 - cosine of inner angle
   vec4 up;      // xyz unit, along its height; w 1 - cosine of outer angle
 };

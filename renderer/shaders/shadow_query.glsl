@@ -4,8 +4,6 @@
 #include "renderer/shaders/light_points.glsl"
 #include "renderer/shaders/lighting.glsl"
 
-layout(std140) uniform LightBlock { LightData light; };
-
 struct ShadowQuery {
   vec3 position;         // receiver, world
   vec3 normal;           // geometric, unit, towards the viewer's side
@@ -15,10 +13,6 @@ struct ShadowQuery {
   vec2 pixel;            // sample of the frame, as gl_FragCoord.xy
   int point;             // index within the batch, 0 .. points_per_batch - 1
 };
-
-vec3 light_center() {
-  return int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
-}
 
 // Whether the surface faces the light's centre and is inside its cone: where visibility means
 // something.

@@ -218,9 +218,7 @@ std::uint32_t view_count(const TechniqueInput& input) {
 
 void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   const Layout& layout = chosen_layout(input.parameters);
-  if (const std::string why = layout.refusal(input.light.kind); !why.empty())
-    throw unsupported(
-        "layout " + layout.id + " cannot serve light " + input.light.name + ": " + why, "layout");
+  require_served(layout, input.light);
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t texels = std::uint64_t{size} * size * view_count(input);
   needs.memory.push_back({"shadow map",

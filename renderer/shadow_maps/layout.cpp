@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "renderer/error.h"
+
 namespace penumbra::shadow_maps {
 
 std::vector<Layout> generated_layouts();  // by the build, from layouts/*.cpp
@@ -20,14 +22,24 @@ const std::vector<Layout>& layouts() {
   return list;
 }
 
-std::string only_directional(LightKind kind) {
-  return kind == LightKind::directional ? "" : "it is for directional lights";
+bool serves(const Layout& layout, LightKind kind) {
+  return std::find(layout.serves.begin(), layout.serves.end(), kind) != layout.serves.end();
+}
+
+void require_served(const Layout& layout, const Light& light) {
+  if (serves(layout, light.kind)) return;
+  std::string kinds;
+  for (const LightKind kind : layout.serves)
+    kinds += (kinds.empty() ? "" : " and ") + name_of(kind);
+  throw unsupported("layout " + layout.id + " cannot serve light " + light.name + ": it is for " +
+                        kinds + " lights",
+                    "layout");
 }
 
 std::vector<std::string> layouts_for(LightKind kind) {
   std::vector<std::string> ids;
   for (const Layout& layout : layouts())
-    if (layout.refusal(kind).empty()) ids.push_back(layout.id);
+    if (serves(layout, kind)) ids.push_back(layout.id);
   return ids;
 }
 

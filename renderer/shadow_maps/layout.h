@@ -42,20 +42,21 @@ struct Layout {
   std::string id;                     ///< value of parameter `layout`, and name of the files
   std::string meaning;                ///< a few words in that parameter's description
   std::vector<Parameter> parameters;  ///< its own; without a variant, so that none costs a compile
-  /// Why it cannot serve this kind of light; empty: it can.
-  std::function<std::string(LightKind)> refusal;
+  std::vector<LightKind> serves;      ///< kinds of light that it is for
   std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
   std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
   bool reads_samples = false;  ///< it asks for `seen_bounds`
 };
 
-/// A refusal of all lights but directional ones.
-std::string only_directional(LightKind kind);
-
 inline constexpr const char* default_layout = "single";
 
 /// In order of id, but the default first.
 const std::vector<Layout>& layouts();
+
+bool serves(const Layout& layout, LightKind kind);
+
+/// Throws unsupported, naming the light, unless the layout serves it.
+void require_served(const Layout& layout, const Light& light);
 
 /// Ids of those that serve lights of a kind.
 std::vector<std::string> layouts_for(LightKind kind);

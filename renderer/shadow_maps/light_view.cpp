@@ -89,13 +89,12 @@ shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double
 }
 
 namespace {
-/// Half angle of the widest spot light that is served by one view, degrees.
+/// Half angle of the widest cone that is served by one view, degrees.
 constexpr double widest_single_view = 75.0;
 }  // namespace
 
 bool has_six_views(const Light& light) {
-  return light.kind == LightKind::point ||
-         (light.kind == LightKind::spot && light.outer_angle > widest_single_view);
+  return beam_half_angle(light) > widest_single_view;
 }
 
 std::vector<shader::MapView> views_around(const WorldLight& light, double widen, double size) {

@@ -15,9 +15,9 @@ double depth_of(const CameraMatrices& camera, const glm::dvec3& point) {
 
 namespace {
 
-/// The half-spaces around a spot light's cone; none where it shines too wide for them.
+/// The half-spaces around a light's cone; none where its rays are parallel or spread too wide.
 std::vector<HalfSpace> cone_sides(const WorldLight& light) {
-  if (light.kind != LightKind::spot || has_six_views(*light.source)) return {};
+  if (!cone_of(*light.source) || has_six_views(*light.source)) return {};
   const auto sides = side_planes(glm::dmat4(views_around(light, 1.0, 1.0)[0].clip_from_world));
   return {sides.begin(), sides.end()};
 }

@@ -24,8 +24,7 @@ void main() {
   bool has_eye = frame.camera_position.w > 0.5;
   vec3 to_camera = has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
   if (dot(normal, to_camera) < 0.0) normal = -normal;
-  bool parallel = int(light.position.w) == light_kind_directional;
-  vec3 to_light = parallel ? light_center() : light_center() - world_position;
+  vec3 to_light = vector_to_light(world_position);
   // Normals of shading lean by a few degrees from those of facets.
   float away = -0.2 * length(normal) * length(to_light);
   float reach = max(length(right) + length(down), 1e-30);

@@ -4,14 +4,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace penumbra::shadow_volumes {
+#include "renderer/scene/light.h"
 
-/// How the light of an extent is spread over its outline.
-enum class LightShape {
-  disc,    ///< evenly over the unit disc
-  ball,    ///< over the unit disc as an evenly filled ball is, seen from far away
-  square,  ///< evenly over the square from -1 to 1
-};
+namespace penumbra::shadow_volumes {
 
 /// Part of the light's area that lies beyond a piece of a straight line, as seen from the centre:
 /// between the ray to the foot of the line (its point nearest to the centre) and the ray at `angle`

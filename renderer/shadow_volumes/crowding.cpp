@@ -176,19 +176,18 @@ struct Thrower {
 
 std::vector<Thrower> find_throwers(const GpuScene& scene, const WorldLight& light,
                                    const VolumeTriangles& wanted) {
-  const bool directional = light.kind == LightKind::directional;
   std::vector<Thrower> throwers;
   for (const DrawRange& range : scene.ranges()) {
     if (!range.casts_shadow) continue;
     const bool every = wanted.sheets.contains(range.instance);
     for (std::uint32_t i = 0; i + 2 < range.index_count; i += 3) {
       Thrower thrower{};
-      for (std::uint32_t k = 0; k < 3; ++k)
-        thrower.corners[k] =
-            glm::dvec3(scene.positions()[scene.indices()[range.first_index + i + k]]) -
-            (directional ? glm::dvec3(0.0) : light.position);
+      const auto position = [&](std::uint32_t k) {
+        return glm::dvec3(scene.positions()[scene.indices()[range.first_index + i + k]]);
+      };
+      for (std::uint32_t k = 0; k < 3; ++k) thrower.corners[k] = position(k) - light.origin();
       const auto& [a, b, c] = thrower.corners;
-      const glm::dvec3 to_light = directional ? -light.direction : -a;
+      const glm::dvec3 to_light = light.to_center(position(0));
       const glm::dvec3 normal = glm::cross(b - a, c - a);
       const double height = glm::dot(normal, to_light);
       const double doubt = edge_on * glm::length(normal) * glm::length(to_light);
@@ -203,13 +202,13 @@ std::vector<Thrower> find_throwers(const GpuScene& scene, const WorldLight& ligh
 /// The triangles with `forward` along z, and the cell that holds all of that side.
 bool crowded_along(const std::vector<Thrower>& throwers, const WorldLight& light,
                    const glm::dvec3& forward, std::size_t most, Doubt doubt) {
-  const bool directional = light.kind == LightKind::directional;
+  const bool parallel = is_at_infinity(*light.source);
   const glm::dvec3 right =
       glm::normalize(std::abs(forward.y) < 0.9 ? glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0))
                                                : glm::cross(forward, glm::dvec3(1.0, 0.0, 0.0)));
   const glm::dvec3 up = glm::cross(right, forward);
   Cell root{glm::dvec2(-1.0), glm::dvec2(1.0)};
-  if (directional) root = {glm::dvec2(1e300), glm::dvec2(-1e300)};
+  if (parallel) root = {glm::dvec2(1e300), glm::dvec2(-1e300)};
   std::vector<std::array<glm::dvec3, 3>> triangles;
   triangles.reserve(throwers.size());
   for (const Thrower& thrower : throwers) {
@@ -217,8 +216,8 @@ bool crowded_along(const std::vector<Thrower>& throwers, const WorldLight& light
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::dvec3& corner = thrower.corners[k];
       corners[k] = {glm::dot(right, corner), glm::dot(up, corner),
-                    directional ? 1.0 : glm::dot(forward, corner)};
-      if (!directional) continue;
+                    parallel ? 1.0 : glm::dot(forward, corner)};
+      if (!parallel) continue;
       root.low = glm::min(root.low, glm::dvec2(corners[k]));
       root.high = glm::max(root.high, glm::dvec2(corners[k]));
     }
@@ -236,7 +235,7 @@ bool search(const GpuScene& scene, const WorldLight& light, const VolumeTriangle
             std::size_t most, Doubt doubt) {
   const std::vector<Thrower> throwers = find_throwers(scene, light, triangles);
   if (throwers.size() <= most) return false;
-  if (light.kind == LightKind::directional)
+  if (is_at_infinity(*light.source))
     return crowded_along(throwers, light, light.direction, most, doubt);
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
@@ -249,18 +248,21 @@ bool search(const GpuScene& scene, const WorldLight& light, const VolumeTriangle
 
 /// What was found for a scene: the same for all techniques and pictures of it.
 struct Found {
-  using Asked = std::tuple<LightKind, std::array<double, 6>, bool, std::set<std::uint32_t>,
-                           std::size_t, Doubt>;
+  using Asked =
+      std::tuple<std::array<double, 7>, bool, std::set<std::uint32_t>, std::size_t, Doubt>;
   mutable std::map<Asked, bool> answers;
 };
 
 bool crowded(const GpuScene& scene, const WorldLight& light, const VolumeTriangles& triangles,
              std::size_t most, Doubt doubt) {
   auto& answers = scene.derived<Found>([] { return std::make_shared<const Found>(); }).answers;
-  const glm::dvec3 &at = light.position, &along = light.direction;
-  const Found::Asked asked{light.kind,    {at.x, at.y, at.z, along.x, along.y, along.z},
-                           triangles.lit, triangles.sheets,
-                           most,          doubt};
+  const glm::dvec4& at = light.center;
+  const glm::dvec3& along = light.direction;
+  const Found::Asked asked{{at.x, at.y, at.z, at.w, along.x, along.y, along.z},
+                           triangles.lit,
+                           triangles.sheets,
+                           most,
+                           doubt};
   const auto known = answers.find(asked);
   if (known != answers.end()) return known->second;
   return answers[asked] = search(scene, light, triangles, most, doubt);

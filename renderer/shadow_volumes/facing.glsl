@@ -14,9 +14,9 @@ layout(push_constant) uniform VolumeBlock {
 
 // Where the shadow of a corner ends: homogeneous, w 0 at infinity.
 vec4 end_of_shadow(vec3 corner) {
-  vec3 along = is_directional() ? light.direction.xyz : corner - light.position.xyz;
+  vec3 along = vector_from_light(corner);
   if (volume.end_plane.xyz != vec3(0.0)) {
-    float from = dot(is_directional() ? corner : along, volume.end_plane.xyz);
+    float from = dot(corner - light_origin(), volume.end_plane.xyz);
     float speed = dot(along, volume.end_plane.xyz);
     return vec4(corner + along * max((volume.end_plane.w - from) / speed, 0.0), 1.0);
   }

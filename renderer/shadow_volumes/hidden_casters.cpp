@@ -202,10 +202,9 @@ bool hides(const Hider& hider, const Way& way, const Bounds& box) {
 }  // namespace
 
 std::set<std::uint32_t> find_hidden_casters(const GpuScene& scene, const WorldLight& light) {
-  const bool directional = light.kind == LightKind::directional;
   const double diagonal = static_cast<double>(glm::length(scene.high() - scene.low()));
-  const Way way{directional ? glm::dvec4(-light.direction, 0.0) : glm::dvec4(light.position, 1.0),
-                directional ? 4.0 * diagonal : 1.0};
+  // To the light, or out of the scene where it is at infinity.
+  const Way way{light.center, glm::mix(4.0 * diagonal, 1.0, light.center.w)};
   std::vector<Caster> casters = find_casters(scene, way);
   std::sort(casters.begin(), casters.end(), [](const Caster& a, const Caster& b) {
     return std::tie(b.size_from_light, a.instance) < std::tie(a.size_from_light, b.instance);

@@ -3,10 +3,7 @@
 #ifndef PENUMBRA_LIGHT_SIDE_GLSL
 #define PENUMBRA_LIGHT_SIDE_GLSL
 #include "renderer/shaders/frame.glsl"
-
-layout(std140) uniform LightBlock { LightData light; };
-
-bool is_directional() { return int(light.position.w) == light_kind_directional; }
+#include "renderer/shaders/light.glsl"
 
 bool is_before(vec3 a, vec3 b) {
   return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
@@ -24,7 +21,7 @@ bool is_before(vec3 a, vec3 b) {
 // order. On paper that comes to the same, for all corners lie in the plane; rounding decides otherwise.
 #ifdef FIRST_CORNER
 int light_side(vec3 a, vec3 b, vec3 c) {
-  vec3 to_light = is_directional() ? -light.direction.xyz : light.position.xyz - a;
+  vec3 to_light = vector_to_light(a);
   return dot(cross(b - a, c - a), to_light) >= 0.0 ? 1 : -1;
 }
 #else
@@ -36,7 +33,7 @@ int light_side(vec3 a, vec3 b, vec3 c) {
   precise vec3 u = inverse_size() * (b - a);
   precise vec3 v = inverse_size() * (c - a);
   precise vec3 normal = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
-  precise vec3 to_light = is_directional() ? -light.direction.xyz : light.position.xyz - a;
+  precise vec3 to_light = vector_to_light(a);
   precise float height = normal.x * to_light.x + normal.y * to_light.y + normal.z * to_light.z;
   // In the plane up to rounding: the sine of the angle to it.
   precise float lengths = length(normal) * length(to_light);
@@ -57,7 +54,7 @@ EdgePlane plane_of_edge(vec3 start, vec3 end) {
   bool turned = is_before(end, start);
   vec3 a = turned ? end : start;
   vec3 b = turned ? start : end;
-  precise vec3 u = is_directional() ? light.direction.xyz : a - light.position.xyz;
+  precise vec3 u = vector_from_light(a);
   precise vec3 v = b - a;
   precise vec3 normal = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
   return EdgePlane(turned ? -normal : normal, a);

@@ -7,10 +7,7 @@
 namespace penumbra::shadow_volumes {
 
 NearPlane::NearPlane(const PrepareContext& context)
-    : clip_from_world_(context.camera.clip_from_world) {
-  const bool directional = context.light.kind == LightKind::directional;
-  light_ = glm::dvec4(directional ? -context.light.direction : context.light.position,
-                      directional ? 0.0 : 1.0);
+    : clip_from_world_(context.camera.clip_from_world), light_(context.light.center) {
   plane_ = penumbra::near_plane(clip_from_world_);
 
   // Planes through the light and the sides of the near rectangle, and the near plane itself, all

@@ -19,16 +19,8 @@ struct TableHead {
   std::array<glm::vec4, point_count> points{};
 };
 
-LightShape shape_of(const WorldLight& light) {
-  if (light.source->extent.kind == ExtentKind::rectangle) return LightShape::square;
-  // The points of a distant sphere are those of a disc (light_points.cpp).
-  const bool ball =
-      light.source->extent.kind == ExtentKind::sphere && light.kind != LightKind::directional;
-  return ball ? LightShape::ball : LightShape::disc;
-}
-
 vulkan::Buffer upload_table(PrepareContext& context, std::uint32_t size) {
-  const LightShape shape = shape_of(context.light);
+  const LightShape shape = shape_of(*context.light.source);
   const CoverageTable table = make_coverage_table(shape, size);
   TableHead head;
   const auto points = light_lattice(shape, TableHead::point_count);

@@ -12,28 +12,15 @@ glm::dvec3 corner_of(const glm::dvec3& low, const glm::dvec3& high, int corner) 
           (corner & 4) != 0 ? high.z : low.z};
 }
 
-/// Whether a sphere lies wholly outside the cone of a spot light.
-bool outside_cone(const WorldLight& light, const glm::dvec3& center, double radius) {
-  const glm::dvec3 offset = center - light.position;
-  const double distance = glm::length(offset);
-  if (distance <= radius) return false;
-  const double angle =
-      std::acos(glm::clamp(glm::dot(offset, light.direction) / distance, -1.0, 1.0));
-  return angle - std::asin(radius / distance) > glm::radians(light.source->outer_angle) + 1e-6;
-}
-
 }  // namespace
 
 VolumeBounds::VolumeBounds(const PrepareContext& context, double light_radius)
     : light_(context.light), light_radius_(light_radius) {
-  const bool directional = light_.kind == LightKind::directional;
-  const glm::dvec4 light(directional ? -light_.direction : light_.position,
-                         directional ? 0.0 : 1.0);
   const auto sides = side_planes(context.camera.clip_from_world);
   std::vector<HalfSpace> view(sides.begin(), sides.end());
   view.push_back(near_plane(context.camera.clip_from_world));
   for (const HalfSpace& plane : view)
-    if (glm::dot(plane, light) >= light_radius * glm::length(glm::dvec3(plane)))
+    if (glm::dot(plane, light_.center) >= light_radius * glm::length(glm::dvec3(plane)))
       planes_.push_back(plane);
   for (const DrawRange& range : context.scene.ranges())
     if (may_touch(range.box(), sides)) receivers_.add(range.box());
@@ -49,14 +36,11 @@ VolumeBounds::VolumeBounds(const PrepareContext& context, double light_radius)
 bool VolumeBounds::may_shadow(const glm::vec3& low, const glm::vec3& high) const {
   if (receivers_.empty()) return false;
   if (!may_touch(Bounds{low, high}, planes_)) return false;
-  if (light_.kind == LightKind::directional) return true;
-  const glm::dvec3 center = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
   // What hides a point of the light from a receiver is no farther than its radius from what hides
   // the centre.
   const double radius = 0.5 * glm::length(glm::dvec3(high) - glm::dvec3(low)) + light_radius_;
-  if (light_.kind == LightKind::spot && outside_cone(light_, center, radius)) return false;
-  const double range = light_.source->range;
-  return range <= 0.0 || glm::length(center - light_.position) - radius <= range;
+  return light_.may_reach(middle, radius);
 }
 
 float VolumeBounds::far_depth(const glm::dmat4& clip_from_world) const {
@@ -71,11 +55,10 @@ float VolumeBounds::far_depth(const glm::dmat4& clip_from_world) const {
 
 std::optional<glm::vec4> VolumeBounds::end_plane(const glm::vec3& low,
                                                  const glm::vec3& high) const {
-  const bool directional = light_.kind == LightKind::directional;
-  const glm::dvec3 from = directional ? glm::dvec3(0.0) : light_.position;
-  const glm::dvec3 offset = 0.5 * (glm::dvec3(low) + glm::dvec3(high)) - from;
-  if (!directional && glm::length(offset) <= 0.0) return std::nullopt;
-  const glm::dvec3 axis = directional ? light_.direction : glm::normalize(offset);
+  const glm::dvec3 from = light_.origin();
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+  if (glm::length(light_.to_center(middle)) <= 0.0) return std::nullopt;
+  const glm::dvec3 axis = light_.ray_direction(middle);
   double end = -std::numeric_limits<double>::infinity();
   double nearest = -end;
   for (int corner = 0; corner < 8; ++corner) {
@@ -85,7 +68,7 @@ std::optional<glm::vec4> VolumeBounds::end_plane(const glm::vec3& low,
     nearest = std::min(nearest, glm::dot(own, axis));
   }
   // A caster that nearly surrounds the light would send its corners far out sideways.
-  if (!directional && nearest < 1e-3 * end) return std::nullopt;
+  if (!is_at_infinity(*light_.source) && nearest < 1e-3 * end) return std::nullopt;
   const double margin = 1e-3 * glm::length(receivers_.size()) + 1e-5 * std::abs(end);
   return glm::vec4(axis, end + margin);
 }

@@ -2,7 +2,7 @@
 // hard volume says whether the light's CENTRE is hidden. From there outwards, whatever lies beyond the
 // edge is hidden where the centre is not, and free where it is: the edge adds or takes away that part
 // of the light (Assarsson and Akenine-Moeller 2003), which a table knows.
-#include "renderer/shadow_volumes/light_shape.glsl"
+#include "renderer/shadow_volumes/light_side.glsl"
 #include "renderer/shadow_volumes/coverage_table.glsl"
 
 layout(location = 0) flat in vec3 edge_start;
@@ -44,9 +44,9 @@ void main() {
   vec3 end = edge_end - surface.xyz;
   float start_depth = dot(start, plane.towards);
   float end_depth = dot(end, plane.towards);
-  // Only what lies between surface and light counts; a directional light is beyond everything.
-  float low = 1e-5 * (is_directional() ? length(start) + length(end) : plane.distance);
-  float high = is_directional() ? 1e30 : plane.distance;
+  // Only what lies between surface and light counts.
+  float low = 1e-5 * rounding_length(plane, length(start) + length(end));
+  float high = plane.end;
   if (max(start_depth, end_depth) <= low || min(start_depth, end_depth) >= high) discard;
   vec3 along = end - start;
   float rise = end_depth - start_depth;

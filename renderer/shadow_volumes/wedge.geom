@@ -3,7 +3,6 @@
 // two faces of two along the edge, and one at each end. The far end is open at infinity; where it
 // counts, because the camera may be inside or the wedge is cut off, two more close it.
 #include "renderer/shadow_volumes/silhouette.glsl"
-#include "renderer/shadow_volumes/light_shape.glsl"
 
 layout(triangle_strip, max_vertices = 72) out;
 layout(location = 0) flat out vec3 edge_start;
@@ -45,22 +44,6 @@ void emit_screen() {
   EndPrimitive();
 }
 
-// Both ends at the distance of the nearer: step 2 of the figure. Where the edge points at the light,
-// both ends are one.
-void level_ends(inout vec3 a, inout vec3 b) {
-  if (is_directional()) {
-    float offset = dot(b - a, light.direction.xyz);
-    if (offset > 0.0) b -= offset * light.direction.xyz;
-    else a += offset * light.direction.xyz;
-    return;
-  }
-  vec3 from_a = a - light.position.xyz;
-  vec3 from_b = b - light.position.xyz;
-  float near = min(length(from_a), length(from_b));
-  a = light.position.xyz + from_a * (near / max(length(from_a), 1e-30));
-  b = light.position.xyz + from_b * (near / max(length(from_b), 1e-30));
-}
-
 // Distance from the camera within which the near plane may cut a wedge open.
 float near_reach() {
   return 1.01 * frame.camera_direction.w * length((frame.world_from_clip * vec4(1.0, 1.0, 0.0, 1.0)).xyz);
@@ -68,8 +51,7 @@ float near_reach() {
 
 vec4 far_end(vec3 from, vec3 along, bool clamped) {
   if (clamped) {
-    vec3 origin = is_directional() ? vec3(0.0) : light.position.xyz;
-    float left = volume.end_plane.w - dot(from - origin, volume.end_plane.xyz);
+    float left = volume.end_plane.w - dot(from - light_origin(), volume.end_plane.xyz);
     return vec4(from + along * max(left / dot(along, volume.end_plane.xyz), 0.0), 1.0);
   }
   if (frame.camera_position.w > 0.5) return vec4(along, 0.0);
@@ -81,10 +63,11 @@ void emit_wedge(vec3 start, vec3 end) {
   edge[1] = end;
   vec3 a = start;
   vec3 b = end;
-  level_ends(a, b);
+  // Step 2 of the figure. Where the edge points at the light, both ends are one.
+  level_with_light(a, b);
   float half_length = 0.5 * distance(a, b);
   vec3 middle = 0.5 * (a + b);
-  vec3 from_light = is_directional() ? light.direction.xyz : middle - light.position.xyz;
+  vec3 from_light = vector_from_light(middle);
   float height = length(from_light);
   vec3 g = from_light / max(height, 1e-30);
   vec3 t = b - a;
@@ -93,19 +76,11 @@ void emit_wedge(vec3 start, vec3 end) {
   t = normalize(t);
   vec3 s = cross(t, g);
 
-  // Tangents of the planes that touch the light: along the edge, and at its ends.
-  float radius = light_radius();
-  float across = radius;
-  float outwards = radius;
   inside = frame.camera_position.w < 0.5;
-  if (!is_directional()) {
-    if (height < 1.02 * radius) {
-      emit_screen();
-      return;
-    }
-    across = radius / sqrt(height * height - radius * radius);
-    float lean = asin(min(radius / length(vec2(height, half_length)), 1.0));
-    outwards = tan(min(atan(half_length, height) + lean, 1.5690));
+  float across, outwards;
+  if (!tangents_past_edge(height, half_length, across, outwards)) {
+    emit_screen();
+    return;
   }
   if (!inside) {
     vec3 camera = frame.camera_position.xyz - middle;

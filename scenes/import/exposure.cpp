@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "renderer/scene/light.h"
 #include "scenes/import/gltf.h"
 #include "scenes/import/seen_points.h"
 
@@ -16,25 +17,14 @@ double illuminance(const Light& light, const glm::dvec3& point, const glm::dvec3
   const double brightness =
       static_cast<double>(light.intensity) *
       static_cast<double>(std::max({light.color.x, light.color.y, light.color.z}));
-  const bool directional = light.kind == LightKind::directional;
-  const glm::dvec3 offset = directional ? -light.direction : light.position - point;
+  const glm::dvec4 center = center_of(light);
+  const glm::dvec3 offset = glm::dvec3(center) - center.w * point;
   const double distance = glm::length(offset);
   if (!(distance > 0.0)) return 0.0;
-  if (light.range > 0.0 && distance > light.range) return 0.0;
-  const double arriving = light.attenuation == Attenuation::inverse_square && !directional
-                              ? brightness / (distance * distance)
-                              : brightness;
+  const double arriving = brightness * attenuation_at(light, distance);
   if (normal == nullptr) return arriving;
   const glm::dvec3 to_light = offset / distance;
-  double cone = 1.0;
-  if (light.kind == LightKind::spot) {
-    const double inner = std::cos(glm::radians(light.inner_angle));
-    const double outer = std::cos(glm::radians(light.outer_angle));
-    const double t = std::clamp(
-        (-glm::dot(to_light, light.direction) - outer) / std::max(inner - outer, 1e-6), 0.0, 1.0);
-    cone = t * t * (3.0 - 2.0 * t);
-  }
-  return arriving * cone * std::max(glm::dot(*normal, to_light), 0.0);
+  return arriving * cone_strength(light, to_light) * std::max(glm::dot(*normal, to_light), 0.0);
 }
 
 double illuminance(const Scene& scene, const glm::dvec3& point, const glm::dvec3* normal) {

@@ -1,6 +1,6 @@
 #include "server/jobs/catalogue.h"
 
-#include "renderer/scene/scene.h"
+#include "renderer/scene/light.h"
 #include "renderer/technique.h"
 #include "scenes/library.h"
 #include "server/jobs/request_scene.h"
@@ -34,7 +34,7 @@ json scene_choices(const Scene& scene) {
   for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
   json lights = json::array();
   for (const Light& light : scene.lights) {
-    if (light.kind == LightKind::directional)
+    if (is_at_infinity(light))
       lights.push_back({{"name", light.name}, {"direction", vector(light.direction)}});
     else
       lights.push_back({{"name", light.name}, {"position", vector(light.position)}});

@@ -30,21 +30,12 @@ void main() {
   out_mask = mask_dark;
   if (position.w == 0.0) return;
   Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
-  vec3 center = int(light.position.w) == light_kind_directional ? -light.direction.xyz : light.position.xyz;
-  Illumination incoming = illuminate(light, center, surface.position);
+  Illumination incoming = illuminate(light_center(), surface.position);
   if (incoming.strength <= 0.0 || dot(surface.geometric_normal, incoming.to_light) <= 0.0) return;
 #ifdef COUNT_SAMPLES
   atomicAdd(counted_samples, 1u);
 #endif
-  ShadowQuery query;
-  query.position = surface.position;
-  query.normal = surface.geometric_normal;
-  query.shading_normal = surface.shading_normal;
-  query.to_light = incoming.to_light;
-  query.light_distance = incoming.distance;
-  query.pixel = gl_FragCoord.xy;
-  query.point = 0;
-  float lit = calculate_shadow(query);
+  float lit = calculate_shadow(make_query(surface, incoming, gl_FragCoord.xy, 0));
   out_mask = lit == 0.0 ? mask_dark : lit == 1.0 ? mask_lit : mask_silhouette;
 #ifdef COUNT_SAMPLES
   if (out_mask == mask_silhouette) atomicAdd(silhouette_samples, 1u);

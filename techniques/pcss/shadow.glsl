@@ -15,12 +15,10 @@ struct ExtentOnMap {
 
 ExtentOnMap extent_on_map(MapPoint point) {
   MapView view = map.views[point.view];
-  vec2 half_size = light.extent.yz;
-  bool square = int(light.extent.x) == 3;  // rectangle
-  if (!square) half_size = light.extent.yy;
-  // Round extents look alike from everywhere; a rectangle lies along its own axes.
-  vec3 along_right = square ? light.right.xyz : normalize(view.right.xyz);
-  vec3 along_up = square ? light.up.xyz : normalize(view.up.xyz);
+  vec2 half_size = light_half_size();
+  vec3 along_right = normalize(view.right.xyz);
+  vec3 along_up = normalize(view.up.xyz);
+  turn_to_extent(along_right, along_up);
   vec2 texels = 0.5 * map.texel.x /
                 vec2(dot(view.right.xyz, view.right.xyz), dot(view.up.xyz, view.up.xyz));
   ExtentOnMap extent;
@@ -33,7 +31,7 @@ ExtentOnMap extent_on_map(MapPoint point) {
   extent.up = warp * extent.up;
   extent.world_right = half_size.x * along_right;
   extent.world_up = half_size.y * along_up;
-  extent.square = square;
+  extent.square = extent_is_square();
   return extent;
 }
 
@@ -103,16 +101,14 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
 // What a tap represents: light from one place of the extent. Behind the receiver's own plane it does
 // not reach it.
 bool is_risen(ShadowQuery query, ExtentOnMap extent, vec2 tap) {
-  bool directional = int(light.position.w) == light_kind_directional;
-  vec3 to_light = directional ? query.to_light : query.to_light * query.light_distance;
+  vec3 to_light = query.to_light * extent_distance(query.light_distance);
   return dot(query.normal, to_light + tap.x * extent.world_right + tap.y * extent.world_up) > 0.0;
 }
 
 // Share of the extent that stands over the receiver's horizon.
 float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
   if (parameter_horizon == 0) return 1.0;
-  bool directional = int(light.position.w) == light_kind_directional;
-  float height = dot(query.normal, query.to_light) * (directional ? 1.0 : query.light_distance);
+  float height = dot(query.normal, query.to_light) * extent_distance(query.light_distance);
   vec2 reach = abs(vec2(dot(query.normal, extent.world_right), dot(query.normal, extent.world_up)));
   if (height > reach.x + reach.y) return 1.0;
   float risen = 0.0;
@@ -124,7 +120,7 @@ float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
 float filter_view(ShadowQuery query, int view) {
   MapPoint point = locate(query, view, 0.5);
   // A light without extent casts no penumbra.
-  if (int(light.extent.x) == 0) return mean_of_bilinear(point, 1);
+  if (!has_extent()) return mean_of_bilinear(point, 1);
   ExtentOnMap extent = extent_on_map(point);
   float rotation = tap_rotation(query.pixel);
   float risen = risen_share(query, extent, rotation);

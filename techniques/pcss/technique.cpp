@@ -36,7 +36,7 @@ class PercentageCloserSoftShadows : public Technique {
     // Penumbrae reach over a view's border by their width at most; how wide they are is known only
     // in the shader. A sixteenth of the view is room for wide ones, unless the layout knows better;
     // strategy slope covers small ones.
-    const bool soft = context.light.source->extent.kind != ExtentKind::none;
+    const bool soft = has_extent(*context.light.source);
     const auto size = static_cast<double>(integer_of(context.input.parameters, "map_size"));
     map_.draw(context, {.kernel_radius = soft ? 4.0 : 0.5,
                         .border = soft ? size / 16.0 : 0.5,

@@ -23,31 +23,25 @@ std::optional<glm::dvec4> plane_of(const std::vector<glm::dvec3>& corners) {
   return glm::dvec4(normal / length, glm::dot(normal / length, corners[0]));
 }
 
+/// Height above a plane, times w.
+double height_of(const glm::dvec4& plane, const glm::dvec4& point) {
+  return glm::dot(glm::dvec3(plane), glm::dvec3(point)) - plane.w * point.w;
+}
+
 /// Homogeneous projection onto the plane from the light (Blinn 1988): a caster at p goes to
-/// l + (p - l) h(l) / (h(l) - h(p)) with h the height above the plane, or along the direction of a
-/// directional light. Empty where the light is not on the receiving side.
+/// l + (p - l) h(l) / (h(l) - h(p)) with h the height above the plane, or along the rays of a light
+/// at infinity. Empty where the light is not on the receiving side.
 std::optional<glm::dmat4> plane_from_caster(const glm::dvec4& plane, const WorldLight& light) {
-  const glm::dvec3 normal(plane);
-  const glm::dvec4 height(normal, -plane.w);  // row: height of a point
-  glm::dmat4 rows(0.0);                       // row i in column i, transposed at the end
-  if (light.kind == LightKind::directional) {
-    const double sink = -glm::dot(normal, light.direction);
-    if (sink <= 0.0) return std::nullopt;
-    for (int i = 0; i < 3; ++i) {
-      rows[i] = height * (light.direction[i] / sink);
-      rows[i][i] += 1.0;
-    }
-    rows[3] = glm::dvec4(0.0, 0.0, 0.0, 1.0);
-  } else {
-    const double light_height = glm::dot(normal, light.position) - plane.w;
-    if (light_height <= 0.0) return std::nullopt;
-    for (int i = 0; i < 3; ++i) {
-      rows[i] = -height * light.position[i];
-      rows[i][i] += light_height;
-    }
-    rows[3] = -height;
-    rows[3].w += light_height;
+  const double light_height = height_of(plane, light.center);
+  if (light_height <= 0.0) return std::nullopt;
+  const glm::dvec4 height(glm::dvec3(plane), -plane.w);  // row: height of a point
+  glm::dmat4 rows(0.0);                                  // row i in column i, transposed at the end
+  for (int i = 0; i < 4; ++i) {
+    rows[i] = -height * light.center[i];
+    rows[i][i] += light_height;
   }
+  // Where no w depends on the point, it is made 1.
+  if (is_at_infinity(*light.source)) rows /= light_height;
   return glm::transpose(rows);
 }
 
@@ -108,9 +102,10 @@ class Projected : public Technique {
     ReceiverData data;
     data.clip_from_caster = glm::mat4(context.camera.clip_from_world * *onto_plane);
     data.plane = glm::vec4(*plane);
-    const double light_height = context.light.kind == LightKind::directional
-                                    ? std::numeric_limits<float>::max()
-                                    : glm::dot(normal, context.light.position) - plane->w;
+    // A light at infinity is above everything.
+    const glm::dvec4& light = context.light.center;
+    const double light_height =
+        std::min(height_of(*plane, light) / light.w, double{std::numeric_limits<float>::max()});
     data.heights = glm::vec4(tolerance, light_height, tolerance, corners.size());
     std::vector<glm::vec4> block(sizeof(ReceiverData) / sizeof(glm::vec4) + corners.size());
     std::memcpy(block.data(), &data, sizeof(data));

@@ -1,4 +1,5 @@
 #include "renderer/reference/occlusion_mask.h"
+#include "renderer/scene/light.h"
 
 namespace penumbra::techniques {
 namespace {
@@ -7,7 +8,7 @@ namespace {
 class RayTraced : public Technique {
  public:
   void require(const TechniqueInput& input, Requirements& needs) override {
-    const bool extended = input.light.extent.kind != ExtentKind::none;
+    const bool extended = has_extent(input.light);
     needs.casters = CasterUse::beam;
     needs.acceleration_structure = true;
     needs.light_points =

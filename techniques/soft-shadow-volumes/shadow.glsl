@@ -8,7 +8,7 @@ uniform sampler2D second_counts;
 // What the wedges add to the part of the light that is hidden, or take away; 0 for lights that have no
 // extent and so no wedges.
 float wedge_correction(vec2 pixel) {
-  return light.extent.y > 0.0 ? texelFetch(wedge_coverage, ivec2(pixel), 0).r : 0.0;
+  return light_half_size().x > 0.0 ? texelFetch(wedge_coverage, ivec2(pixel), 0).r : 0.0;
 }
 
 // Mean over points of the light of how often each is counted more than once, given the count of its
@@ -26,7 +26,7 @@ float counted_too_often(float center, vec4 packed) {
 float calculate_shadow(ShadowQuery query) {
   float center = float(count_volumes(query.pixel));
   float hidden = center + wedge_correction(query.pixel);
-  if (parameter_overlap == overlap_count && light.extent.y > 0.0) {
+  if (parameter_overlap == overlap_count && light_half_size().x > 0.0) {
     ivec2 texel = ivec2(query.pixel);
     hidden -= counted_too_often(center, texelFetch(first_counts, texel, 0)) +
               counted_too_often(center, texelFetch(second_counts, texel, 0));

@@ -18,7 +18,7 @@ struct Verdict {
 
 /// Whether light from the centre comes here at all; elsewhere the mask is not read.
 bool inside_light(const WorldLight& light, const glm::vec3& position) {
-  if (light.kind != LightKind::spot) return true;
+  if (light.source->kind != LightKind::spot) return true;
   const glm::dvec3 offset = glm::dvec3(position) - light.position;
   return glm::dot(glm::normalize(offset), light.direction) >
          std::cos(glm::radians(light.source->outer_angle));

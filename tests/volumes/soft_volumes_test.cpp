@@ -9,7 +9,6 @@
 namespace penumbra {
 namespace {
 
-using shadow_volumes::LightShape;
 using shadow_volumes::part_beyond_line;
 using test::draw;
 using test::ground_point;

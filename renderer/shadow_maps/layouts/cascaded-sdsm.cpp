@@ -107,7 +107,7 @@ Layout describe_cascaded_sdsm() {
               "slices as of cascaded, each fitted to samples of what the camera really sees, for "
               "directional lights",
           .parameters = split_parameters(),
-          .refusal = only_directional,
+          .serves = {LightKind::directional},
           .view_count = [](const Light&,
                            const ParameterValues& parameters) { return cascade_count(parameters); },
           .fit = fit_to_samples,

@@ -110,7 +110,7 @@ Layout describe_cascaded() {
               "views of slices of what the camera sees, near ones finer, for directional "
               "lights",
           .parameters = cascade_parameters(),
-          .refusal = only_directional,
+          .serves = {LightKind::directional},
           .view_count = [](const Light&,
                            const ParameterValues& parameters) { return cascade_count(parameters); },
           .fit = fit_cascades};

@@ -29,7 +29,7 @@ Layout describe_light_space_perspective() {
   return {.id = "light-space-perspective",
           .meaning = "one view bent so that near places get more texels, for directional lights",
           .parameters = {distance},
-          .refusal = only_directional,
+          .serves = {LightKind::directional},
           .view_count = [](const Light&, const ParameterValues&) { return 1u; },
           .fit = fit_light_space_perspective};
 }

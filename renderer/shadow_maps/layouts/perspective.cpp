@@ -55,9 +55,7 @@ glm::dmat4 cube_from_world(const VirtualCamera& camera) {
 Weight weight_of(const WorldLight& light, const VirtualCamera& camera,
                  const std::vector<glm::dvec3>& points) {
   const glm::dmat4 cube = cube_from_world(camera);
-  const bool parallel = light.kind == LightKind::directional;
-  const glm::dvec4 place =
-      cube * (parallel ? glm::dvec4(-light.direction, 0.0) : glm::dvec4(light.position, 1.0));
+  const glm::dvec4 place = cube * light.center;
   const glm::dmat4 columns = glm::transpose(cube);
   // In the plane of the camera's eye it becomes a light of parallel rays.
   if (std::abs(place.w) <= 1e-9 * glm::length(glm::dvec3(place))) return {columns[3], 0.0};
@@ -107,7 +105,7 @@ struct Plain {
 Plain plain_view(const ViewFitting& fitting, const ViewAxes& axes,
                  const std::vector<glm::dvec3>& points) {
   const WorldLight& light = fitting.light;
-  if (light.kind == LightKind::directional) {
+  if (is_at_infinity(*light.source)) {
     const FocusedView focused = focused_view(fitting, axes, points);
     const glm::dvec3 origin = focused.center.x * axes.right() - focused.center.y * axes.up;
     return {focused.view, focused.seen, focused.half * axes.right(), -focused.half * axes.up,
@@ -172,7 +170,7 @@ double nearest_caster(const ViewFitting& fitting, const Plain& plain) {
     const Bounds box = fitting.scene.near_part(caster);
     if (box.empty()) continue;
     visit_clipped_corners(box, sides, add);
-    if (fitting.light.kind == LightKind::spot && contains(box, fitting.light.position))
+    if (plain.view.origin.w > 0.5f && contains(box, fitting.light.position))
       add(fitting.light.position);
   }
   return nearest;
@@ -185,8 +183,8 @@ double reach_of(const ViewFitting& fitting, const Plain& plain) {
   fit_ranges(views, fitting.scene, fitting.fit, true);
   const double near = static_cast<double>(views[0].range.x);
   const double far = static_cast<double>(views[0].range.y);
-  return fitting.light.kind == LightKind::directional ? radius * (far - near)
-                                                      : radius * (1.0 / near - 1.0 / far);
+  const bool perspective = plain.view.origin.w > 0.5f;
+  return perspective ? radius * (1.0 / near - 1.0 / far) : radius * (far - near);
 }
 
 /// One view around the camera's picture of what is seen.
@@ -238,10 +236,6 @@ std::vector<shader::MapView> fit_perspective(const ViewFitting& fitting) {
   return views;
 }
 
-std::string refuse_point_lights(LightKind kind) {
-  return kind == LightKind::point ? "it is for directional and spot lights" : "";
-}
-
 }  // namespace
 
 Layout describe_perspective();
@@ -255,7 +249,7 @@ Layout describe_perspective() {
                          boolean("cube_clipping", true,
                                  "Fit the view to what is seen of the scene; otherwise to all that "
                                  "the camera could see.")},
-          .refusal = refuse_point_lights,
+          .serves = {LightKind::directional, LightKind::spot},
           .view_count = [](const Light& light,
                            const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
           .fit = fit_perspective};

@@ -9,12 +9,13 @@ namespace {
 
 std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
   const WorldLight& light = fitting.light;
-  if (light.kind == LightKind::directional && choice_of(fitting.parameters, "focus") == "seen")
+  const bool parallel = is_at_infinity(*light.source);
+  if (parallel && choice_of(fitting.parameters, "focus") == "seen")
     return fit_warped(fitting,
                       [](const WarpInput&) { return std::numeric_limits<double>::infinity(); });
   const double widen = 1.0 / (1.0 - 2.0 * guard_share(fitting.use, fitting.size));
   std::vector<shader::MapView> views;
-  if (light.kind == LightKind::directional) {
+  if (parallel) {
     const ViewAxes axes{light.direction, light.up};
     const Bounds bounds = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
     const glm::dvec3 center = bounds.center();
@@ -39,7 +40,7 @@ Layout describe_single() {
   return {.id = "single",
           .meaning = "one view over the light's cone or the scene, six around a point light",
           .parameters = {focus},
-          .refusal = [](LightKind) { return std::string(); },
+          .serves = {LightKind::spot, LightKind::directional, LightKind::point},
           .view_count = [](const Light& light,
                            const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
           .fit = fit_single};

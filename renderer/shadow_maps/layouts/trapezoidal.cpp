@@ -40,7 +40,7 @@ Layout describe_trapezoidal() {
                                          "the light's direction."),
                          share_parameter("focus_share", 0.8, 0.99,
                                          "Share of the map that the part in focus gets.")},
-          .refusal = only_directional,
+          .serves = {LightKind::directional},
           .view_count = [](const Light&, const ParameterValues&) { return 1u; },
           .fit = fit_trapezoidal};
 }
