@@ -184,11 +184,10 @@ Field included_field() {
           }};
 }
 
-}  // namespace
-
-const std::vector<Field>& response_fields() {
+/// Who saw which picture of what.
+std::vector<Field> subject_fields() {
   using Row = ResponseRow;
-  static const std::vector<Field> list{
+  return {
       text_field("study", "id of the study", &Row::study),
       text_field("study_hash", "SHA-256 of the study as it was published", &Row::study_hash),
       text_field("participant", "pseudonym", &Row::participant, true),
@@ -210,6 +209,13 @@ const std::vector<Field>& response_fields() {
                  &Row::own_picture),
       text_field("parameters_hash", "hash of the parameters that the study gave the picture",
                  &Row::parameters_hash),
+  };
+}
+
+/// What was said of the picture and its page, and how long that took.
+std::vector<Field> answer_fields() {
+  using Row = ResponseRow;
+  return {
       integer_field("slot", "position on the page, from 0", &Row::slot, 0, max_cell_count),
       rank_field(),
       integer_field("shelf_0_is_most_realistic", "shelf the picture was put on", &Row::shelf, 0,
@@ -232,6 +238,12 @@ const std::vector<Field>& response_fields() {
       text_field("started_at", "when the participant entered, ISO 8601, UTC", &Row::started_at),
       text_field("answered_at", "when the server stored the answer, ISO 8601, UTC",
                  &Row::answered_at),
+  };
+}
+
+/// What was noted of the page besides.
+std::vector<Field> page_fields() {
+  return {
       page_field("participant_completed", "boolean",
                  "TRUE where the participant finished the study",
                  [](const PageFacts& page) { return flag_text(page.participant_completed); }),
@@ -265,6 +277,17 @@ const std::vector<Field>& response_fields() {
       page_field("page_answered_at", "text", "by the browser's clock",
                  [](const PageFacts& page) { return csv_text(page.seen.answered_at); }),
   };
+}
+
+}  // namespace
+
+const std::vector<Field>& response_fields() {
+  static const std::vector<Field> list = [] {
+    std::vector<Field> all = subject_fields();
+    for (const auto& more : {answer_fields(), page_fields()})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
   return list;
 }
 

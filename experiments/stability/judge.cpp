@@ -12,13 +12,13 @@
 namespace penumbra::experiments::stability {
 namespace {
 
-/// How far a pixel's sample is moved to see whether its answer is firm, in pixels.
+/// How far a pixel's sample is moved to see whether its value is firm, in pixels.
 constexpr double firmness = 0.04;
 /// Points of an extent that are looked at for that.
 constexpr std::uint32_t firm_points = 16;
 /// By how much the share that is seen may change there.
 constexpr double firm_change = 0.1;
-/// Facets that face the light by less (sine) lie in its direction's plane: either answer is right.
+/// Facets that face the light by less (sine) lie in its direction's plane: either is right.
 constexpr double least_facing = 1e-6;
 /// Light below which a pixel says nothing about a lamp that went out.
 constexpr double least_light = 1e-6;
@@ -74,7 +74,7 @@ std::vector<glm::dvec3> points_of(const Light& light, std::uint32_t count) {
 /// The strength of a spot by its angle, as the schema defines it: all within `inner`, none beyond
 /// `outer`, smooth in the cosine between. In double the cosines of angles of 1e-3 degrees still
 /// differ.
-double cone_strength(const Light& light, const glm::dvec3& unit_to_light) {
+double spot_strength(const Light& light, const glm::dvec3& unit_to_light) {
   if (light.kind != LightKind::spot) return 1.0;
   const double cosine = -glm::dot(unit_to_light, glm::normalize(light.direction));
   const double inner = std::cos(glm::radians(light.inner_angle));
@@ -125,12 +125,12 @@ class Judge {
       const double cosine = glm::dot(hit->normal, glm::normalize(to_point));
       // Where part of the light lies below the facet, shares are a matter of definition.
       if (cosine < least_facing) return std::nullopt;
-      light += cosine * cone_strength(light_, glm::normalize(to_point));
+      light += cosine * spot_strength(light_, glm::normalize(to_point));
       seen += !rays_.hidden(position, to_point, hit->triangle);
     }
     const glm::dvec3 center =
         glm::normalize(directional ? -light_.direction : light_.position - position);
-    const double strength = cone_strength(light_, center);
+    const double strength = spot_strength(light_, center);
     if (strength < least_strength) return std::nullopt;
     // Light may be taken from the centre or from every point: the lesser is owed by both.
     const auto points = static_cast<double>(count);
@@ -138,7 +138,7 @@ class Judge {
     return Sample{static_cast<double>(seen) / points, light_.intensity * light};
   }
 
-  /// The middle of a pixel, if its answer does not change a little beside.
+  /// The middle of a pixel, if its value does not change a little beside it.
   std::optional<Sample> pixel(std::uint32_t x, std::uint32_t y) const {
     const glm::dvec2 middle(x + 0.5, y + 0.5);
     const std::size_t few = std::min<std::size_t>(points_.size(), firm_points);

@@ -35,9 +35,7 @@ void look_without_perspective(Scene& scene, double height) {
   scene.cameras[0].orthographic_height = height;
 }
 
-}  // namespace
-
-void add_view_axes(std::vector<Axis>& axes) {
+void add_perspective_axes(std::vector<Axis>& axes) {
   axes.push_back(view_axis("zoom", "field of view on the border of a shadow", "degrees",
                            {40.0, 10.0, 3.0, 1.0, 0.3, 0.1, 0.01, 1e-3},
                            [](Camera& camera, double degrees) {
@@ -65,6 +63,9 @@ void add_view_axes(std::vector<Axis>& axes) {
         camera.position =
             camera.target + 6.0 * glm::dvec3(0.45 * std::cos(e), std::sin(e), 0.893 * std::cos(e));
       }));
+}
+
+void add_orthographic_axes(std::vector<Axis>& axes) {
   axes.push_back({"orthographic-scale",
                   "scene made smaller, without perspective",
                   "times",
@@ -97,6 +98,13 @@ void add_view_axes(std::vector<Axis>& axes) {
                     look_without_perspective(scene, height);
                     return Trial{.scene = askew(std::move(scene))};
                   }});
+}
+
+}  // namespace
+
+void add_view_axes(std::vector<Axis>& axes) {
+  add_perspective_axes(axes);
+  add_orthographic_axes(axes);
   axes.push_back(size_axis("small-picture", "pictures of few pixels", {96, 32, 8, 2, 1}, true));
   axes.push_back(size_axis("wide-picture", "pictures 8 pixels high", {96, 512, 2048, 8192}, false));
 }

@@ -108,23 +108,27 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   upload_materials(device);
 }
 
-void GpuScene::flatten() {
-  struct Part {
-    std::uint32_t instance, primitive, material;
-    bool holes;
-  };
+std::vector<GpuScene::Part> GpuScene::find_parts() const {
   Coverages coverages(*scene_);
   std::vector<Part> parts;
-  std::size_t vertex_count = 0;
   for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
-    const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
-    first_vertex_.push_back(static_cast<std::uint32_t>(vertex_count));
     if (!used(i)) continue;
-    vertex_count += mesh.positions.size();
-    for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p)
-      if (const Coverage coverage = coverages.of(mesh, mesh.primitives[p]);
-          coverage != Coverage::nothing)
-        parts.push_back({i, p, mesh.primitives[p].material, coverage == Coverage::holes});
+    const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
+    for (const Primitive& primitive : mesh.primitives)
+      if (const Coverage coverage = coverages.of(mesh, primitive); coverage != Coverage::nothing)
+        parts.push_back({i, &primitive, coverage == Coverage::holes});
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.primitive->material < b.primitive->material;
+  });
+  return parts;
+}
+
+void GpuScene::add_vertices() {
+  std::size_t vertex_count = 0;
+  for (std::size_t i = 0; i < scene_->instances.size(); ++i) {
+    first_vertex_.push_back(static_cast<std::uint32_t>(vertex_count));
+    if (used(i)) vertex_count += scene_->meshes[scene_->instances[i].mesh].positions.size();
   }
   if (vertex_count > 0xfffffff0u) throw unsupported("the scene has more than 2^32 vertices");
   position_list_.reserve(vertex_count);
@@ -148,37 +152,40 @@ void GpuScene::flatten() {
       position_list_.push_back(glm::vec3(world_from_object * glm::dvec4(mesh.positions[v], 1.0)));
     }
   }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.material < b.material; });
-  for (const Part& part : parts) {
-    const Instance& instance = scene_->instances[part.instance];
-    const Mesh& mesh = scene_->meshes[instance.mesh];
-    const Primitive& primitive = mesh.primitives[part.primitive];
-    if (primitive.index_count == 0) continue;
-    const Material& material = scene_->materials[part.material];
-    DrawRange range;
-    range.first_index = static_cast<std::uint32_t>(index_list_.size());
-    range.index_count = primitive.index_count;
-    range.material = part.material;
-    range.instance = part.instance;
-    range.visible = uses_[part.instance].visible;
-    range.casts_shadow = uses_[part.instance].casts;
-    range.double_sided = material.double_sided;
-    range.masked = part.holes;
-    range.low = glm::vec3(std::numeric_limits<float>::max());
-    range.high = -range.low;
-    const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
-    for (std::uint32_t i = 0; i < primitive.index_count; ++i) {
-      const std::uint32_t corner = i % 3;
-      const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
-      const std::uint32_t index =
-          first_vertex_[part.instance] + mesh.indices[primitive.first_index + turned];
-      index_list_.push_back(index);
-      range.low = glm::min(range.low, position_list_[index]);
-      range.high = glm::max(range.high, position_list_[index]);
-    }
-    ranges_.push_back(range);
+}
+
+void GpuScene::add_range(const Part& part) {
+  const Instance& instance = scene_->instances[part.instance];
+  const Mesh& mesh = scene_->meshes[instance.mesh];
+  const Primitive& primitive = *part.primitive;
+  DrawRange range;
+  range.first_index = static_cast<std::uint32_t>(index_list_.size());
+  range.index_count = primitive.index_count;
+  range.material = primitive.material;
+  range.instance = part.instance;
+  range.visible = uses_[part.instance].visible;
+  range.casts_shadow = uses_[part.instance].casts;
+  range.double_sided = scene_->materials[primitive.material].double_sided;
+  range.masked = part.holes;
+  range.low = glm::vec3(std::numeric_limits<float>::max());
+  range.high = -range.low;
+  const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
+  for (std::uint32_t i = 0; i < primitive.index_count; ++i) {
+    const std::uint32_t corner = i % 3;
+    const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
+    const std::uint32_t index =
+        first_vertex_[part.instance] + mesh.indices[primitive.first_index + turned];
+    index_list_.push_back(index);
+    range.low = glm::min(range.low, position_list_[index]);
+    range.high = glm::max(range.high, position_list_[index]);
   }
+  ranges_.push_back(range);
+}
+
+void GpuScene::flatten() {
+  add_vertices();
+  for (const Part& part : find_parts())
+    if (part.primitive->index_count > 0) add_range(part);
 }
 
 void GpuScene::upload_materials(vulkan::Device& device) {

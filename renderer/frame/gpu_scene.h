@@ -45,7 +45,7 @@ struct SceneFrame {
 /// camera sees; the camera's place where the scene reaches too far for that.
 SceneFrame scene_frame(const Scene& scene, const Camera& camera);
 
-/// A scene on the device, flattened: every instance's triangles stand in world space in one vertex
+/// A scene on the device, flattened: every instance's triangles are in world space in one vertex
 /// and one index buffer, sorted by material. World space here is the scene's moved by -origin, so
 /// that rasteriser, silhouettes and ray intersection share the very same float positions.
 class GpuScene {
@@ -112,6 +112,15 @@ class GpuScene {
   }
 
  private:
+  /// Triangles of one instance and material that cover anything.
+  struct Part {
+    std::uint32_t instance;
+    const Primitive* primitive;
+    bool holes;  ///< its texture has some
+  };
+  std::vector<Part> find_parts() const;  ///< by material
+  void add_vertices();
+  void add_range(const Part& part);
   void flatten();
   bool used(std::size_t instance) const { return uses_[instance].visible || uses_[instance].casts; }
   void upload_materials(vulkan::Device& device);

@@ -28,10 +28,9 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
   return buffer;
 }
 
-void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
-                   const GpuScene& scene, const GeometryBuffer& buffer,
-                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
-                   const GammaTreatment& gamma) {
+namespace {
+
+vulkan::RenderTargets targets_of(const GeometryBuffer& buffer) {
   vulkan::RenderTargets targets;
   targets.width = buffer.width;
   targets.height = buffer.height;
@@ -42,14 +41,21 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   targets.depth_format = buffer.depth.description().format;
   targets.clear_depth = true;
   targets.clear_stencil = true;
+  return targets;
+}
 
+vulkan::GraphicsState geometry_state(const vulkan::RenderTargets& targets) {
   vulkan::GraphicsState state;
   state.color_formats = {GeometryBuffer::position_format, GeometryBuffer::words_format,
                          GeometryBuffer::radiance_format};
   state.depth_format = targets.depth_format;
   state.depth_test = true;
+  return state;
+}
 
-  commands.begin_rendering(targets);
+void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+                   const GpuScene& scene, vulkan::GraphicsState state, vulkan::Bindings bindings,
+                   const glm::mat4& clip_from_world, const GammaTreatment& gamma) {
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
@@ -60,13 +66,12 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   state.vertex_input = vulkan::VertexInput::surface;
   state.depth_compare = VK_COMPARE_OP_GREATER;
   state.depth_write = true;
-  const auto& materials = scene.scene().materials;
   const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
   vkCmdBindIndexBuffer(commands.handle(), scene.index_buffer().handle(), 0, VK_INDEX_TYPE_UINT32);
-  vulkan::Bindings bindings = frame_bindings;
 
+  // Neighbouring ranges of one material are drawn at once.
   const auto& ranges = scene.ranges();
   const auto sides = side_planes(glm::dmat4(clip_from_world));
   const auto visible = [&](const DrawRange& range) {
@@ -83,7 +88,7 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     while (next < ranges.size() && ranges[next].material == first.material &&
            ranges[next].masked == first.masked && visible(ranges[next]))
       count += ranges[next++].index_count;
-    const bool textured = materials[first.material].texture >= 0;
+    const bool textured = scene.scene().materials[first.material].texture >= 0;
     if (textured)
       bindings.texture("surface_texture", scene.texture_of(first.material),
                        vulkan::Sampling::linear_repeat);
@@ -93,8 +98,11 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
     i = next;
   }
+}
 
-  // The sky where no surface was drawn: together they cover everything, and no clear is needed.
+/// Where no surface was drawn: together they cover everything, and no clear is needed.
+void draw_sky(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+              vulkan::GraphicsState state, const vulkan::Bindings& bindings) {
   vulkan::ProgramSource sky;
   sky.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                 {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
@@ -102,8 +110,21 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   state.depth_compare = VK_COMPARE_OP_EQUAL;
   state.depth_write = false;
   commands.cull(VK_CULL_MODE_NONE);
-  commands.bind(pipelines.graphics(sky, state), frame_bindings);
+  commands.bind(pipelines.graphics(sky, state), bindings);
   commands.full_screen_triangle();
+}
+
+}  // namespace
+
+void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+                   const GpuScene& scene, const GeometryBuffer& buffer,
+                   const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
+                   const GammaTreatment& gamma) {
+  const vulkan::RenderTargets targets = targets_of(buffer);
+  const vulkan::GraphicsState state = geometry_state(targets);
+  commands.begin_rendering(targets);
+  draw_surfaces(commands, pipelines, scene, state, frame_bindings, clip_from_world, gamma);
+  draw_sky(commands, pipelines, state, frame_bindings);
   commands.end_rendering();
 }
 

@@ -222,52 +222,65 @@ Device::Device(const RendererOptions& options) {
   }
 }
 
-void Device::create_logical_device() {
-  if (properties.apiVersion < VK_API_VERSION_1_3)
-    throw device_error(info.name + " offers no Vulkan 1.3");
-
-  // Every feature here is relied upon; the optional ones are copied where the device has them.
-  VkPhysicalDeviceVulkan13Features has13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceVulkan12Features has12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+Device::Offered Device::offered_features() const {
+  Offered offered{};
+  VkPhysicalDeviceVulkan13Features& has13 = offered.since13;
+  VkPhysicalDeviceVulkan12Features& has12 = offered.since12;
+  has13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  has12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   has12.pNext = &has13;
   VkPhysicalDeviceFeatures2 has{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &has12, {}};
   vkGetPhysicalDeviceFeatures2(physical, &has);
+  offered.core = has.features;
+  has12.pNext = nullptr;
+  return offered;
+}
+
+void Device::choose_features(const Offered& offered) {
+  const VkPhysicalDeviceFeatures& has = offered.core;
   const auto need = [&](VkBool32 present, const char* name) {
     if (!present) throw device_error(info.name + " lacks the feature " + name);
   };
-  need(has13.dynamicRendering, "dynamicRendering");
-  need(has13.synchronization2, "synchronization2");
-  need(has.features.geometryShader, "geometryShader");
-  need(has.features.depthClamp, "depthClamp");
-  need(has.features.pipelineStatisticsQuery, "pipelineStatisticsQuery");
-  need(has.features.independentBlend, "independentBlend");
-  need(has.features.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+  need(offered.since13.dynamicRendering, "dynamicRendering");
+  need(offered.since13.synchronization2, "synchronization2");
+  need(has.geometryShader, "geometryShader");
+  need(has.depthClamp, "depthClamp");
+  need(has.pipelineStatisticsQuery, "pipelineStatisticsQuery");
+  need(has.independentBlend, "independentBlend");
+  need(has.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
 
   features.geometryShader = VK_TRUE;
   features.depthClamp = VK_TRUE;
   features.pipelineStatisticsQuery = VK_TRUE;
   features.independentBlend = VK_TRUE;
   features.fragmentStoresAndAtomics = VK_TRUE;
-  features.imageCubeArray = has.features.imageCubeArray;
-  features.samplerAnisotropy = has.features.samplerAnisotropy;
-  features.shaderFloat64 = has.features.shaderFloat64;
-  features.shaderInt64 = has.features.shaderInt64;
-  features.occlusionQueryPrecise = has.features.occlusionQueryPrecise;
-  features.shaderStorageImageReadWithoutFormat = has.features.shaderStorageImageReadWithoutFormat;
-  features.shaderStorageImageWriteWithoutFormat = has.features.shaderStorageImageWriteWithoutFormat;
-  features.fillModeNonSolid = has.features.fillModeNonSolid;
+  features.imageCubeArray = has.imageCubeArray;
+  features.samplerAnisotropy = has.samplerAnisotropy;
+  features.shaderFloat64 = has.shaderFloat64;
+  features.shaderInt64 = has.shaderInt64;
+  features.occlusionQueryPrecise = has.occlusionQueryPrecise;
+  features.shaderStorageImageReadWithoutFormat = has.shaderStorageImageReadWithoutFormat;
+  features.shaderStorageImageWriteWithoutFormat = has.shaderStorageImageWriteWithoutFormat;
+  features.fillModeNonSolid = has.fillModeNonSolid;
+}
 
+std::uint32_t Device::find_queue_family() const {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
   constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  queue_family = count;
-  for (std::uint32_t i = 0; i < count && queue_family == count; ++i)
-    if ((families[i].queueFlags & wanted) == wanted && families[i].timestampValidBits > 0)
-      queue_family = i;
-  if (queue_family == count)
-    throw device_error(info.name + " has no queue with graphics, compute and timestamps");
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & wanted) == wanted && families[i].timestampValidBits > 0) return i;
+  throw device_error(info.name + " has no queue with graphics, compute and timestamps");
+}
+
+void Device::create_logical_device() {
+  if (properties.apiVersion < VK_API_VERSION_1_3)
+    throw device_error(info.name + " offers no Vulkan 1.3");
+  const Offered offered = offered_features();
+  choose_features(offered);
+  queue_family = find_queue_family();
 
   const float priority = 1.0f;
   VkDeviceQueueCreateInfo queue_create{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
@@ -278,11 +291,11 @@ void Device::create_logical_device() {
   VkPhysicalDeviceVulkan13Features use13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   use13.dynamicRendering = VK_TRUE;
   use13.synchronization2 = VK_TRUE;
-  use13.maintenance4 = has13.maintenance4;
-  use13.shaderDemoteToHelperInvocation = has13.shaderDemoteToHelperInvocation;
+  use13.maintenance4 = offered.since13.maintenance4;
+  use13.shaderDemoteToHelperInvocation = offered.since13.shaderDemoteToHelperInvocation;
   VkPhysicalDeviceVulkan12Features use12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
   use12.pNext = &use13;
-  use12.hostQueryReset = has12.hostQueryReset;
+  use12.hostQueryReset = offered.since12.hostQueryReset;
   VkPhysicalDeviceFeatures2 use{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &use12, features};
 
   const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};

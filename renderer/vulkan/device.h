@@ -116,6 +116,16 @@ class Device {
   void throw_if_validation_failed();
 
  private:
+  struct Offered {
+    VkPhysicalDeviceFeatures core;
+    VkPhysicalDeviceVulkan12Features since12;
+    VkPhysicalDeviceVulkan13Features since13;
+  };
+  Offered offered_features() const;
+  /// Every feature that is needed, or throws; the optional ones where the device has them.
+  void choose_features(const Offered& offered);
+  /// The first with graphics, compute and timestamps.
+  std::uint32_t find_queue_family() const;
   void create_logical_device();
   void release();
   VkInstance instance_ = VK_NULL_HANDLE;

@@ -113,18 +113,9 @@ Buffer::Buffer(Device& device, MemoryLedger& ledger, const std::string& name, Vk
   ledger.add(name, bytes);
 }
 
-Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
-             const ImageDescription& description)
-    : description_(description), aspects_(aspects_of(description.format)) {
-  const auto& limits = device.properties.limits;
-  if (std::max(description.width, description.height) > limits.maxImageDimension2D)
-    throw unsupported(name + " of " + std::to_string(description.width) + "x" +
-                      std::to_string(description.height) + " exceeds the device's limit of " +
-                      std::to_string(limits.maxImageDimension2D));
-  if (description.layers > limits.maxImageArrayLayers)
-    throw unsupported(name + " has more layers than the device's limit of " +
-                      std::to_string(limits.maxImageArrayLayers));
+namespace {
 
+VkImageCreateInfo image_info(const ImageDescription& description) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = description.format;
@@ -135,12 +126,27 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = description.usage;
   info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  return info;
+}
+
+/// Throws unless the device can hold the image.
+void check_limits(const Device& device, const std::string& name,
+                  const ImageDescription& description) {
+  const auto& limits = device.properties.limits;
+  if (std::max(description.width, description.height) > limits.maxImageDimension2D)
+    throw unsupported(name + " of " + std::to_string(description.width) + "x" +
+                      std::to_string(description.height) + " exceeds the device's limit of " +
+                      std::to_string(limits.maxImageDimension2D));
+  if (description.layers > limits.maxImageArrayLayers)
+    throw unsupported(name + " has more layers than the device's limit of " +
+                      std::to_string(limits.maxImageArrayLayers));
+  const VkImageCreateInfo info = image_info(description);
   VkImageFormatProperties format_limits{};
   if (vkGetPhysicalDeviceImageFormatProperties(device.physical, info.format, info.imageType,
                                                info.tiling, info.usage, 0,
                                                &format_limits) != VK_SUCCESS)
     throw device_error("the device has no image format for " + name);
-  // Reckoned here, since the driver's own answer overflows for huge images.
+  // Reckoned here, since the driver's own number overflows for huge images.
   const double bytes = 1.0 * texel_bytes(description.format) * description.width *
                        description.height * description.layers *
                        (description.levels > 1 ? 4.0 / 3.0 : 1.0);
@@ -148,7 +154,33 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
     throw unsupported(name + " of " + std::to_string(static_cast<std::uint64_t>(bytes)) +
                       " bytes exceeds the device's limit of " +
                       std::to_string(format_limits.maxResourceSize) + " for an image");
+}
 
+/// All images stay in the general layout, from when they are made.
+void set_general_layout(Device& device, VkImage image, const VkImageSubresourceRange& all) {
+  run_now(device, [&](VkCommandBuffer commands) {
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = all;
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+  });
+}
+
+}  // namespace
+
+Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
+             const ImageDescription& description)
+    : description_(description), aspects_(aspects_of(description.format)) {
+  check_limits(device, name, description);
+  const VkImageCreateInfo info = image_info(description);
   VkImage image = VK_NULL_HANDLE;
   check(vkCreateImage(device.handle, &info, nullptr, &image), "vkCreateImage");
   image_ = {device.handle, image};
@@ -157,43 +189,30 @@ Image::Image(Device& device, MemoryLedger& ledger, const std::string& name,
   memory_ = allocate(device, needs, MemoryKind::device, name, ledger);
   check(vkBindImageMemory(device.handle, image, memory_, 0), "vkBindImageMemory");
   ledger.add(name, needs.size);
+  make_views(device);
+  set_general_layout(device, image_, {aspects_, 0, description.levels, 0, description.layers});
+}
 
-  const bool depth = has_depth(description.format);
-  const VkImageAspectFlags view_aspect =
-      depth ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : aspects_;
-  const VkImageViewType type = description.layers > 1 || description.array_view
-                                   ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
-                                   : VK_IMAGE_VIEW_TYPE_2D;
+void Image::make_views(Device& device) {
   constexpr VkImageUsageFlags viewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
                                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if ((description.usage & viewed) != 0) {
-    const VkImageSubresourceRange all{view_aspect, 0, description.levels, 0, description.layers};
-    view_ = make_view(device, image_, description.format, type, all);
-    if (has_stencil(description.format)) {
-      const VkImageSubresourceRange stencil{VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0,
-                                            description.layers};
-      stencil_view_ = make_view(device, image_, description.format, type, stencil);
-    }
-    for (std::uint32_t level = 0; level < description.levels; ++level)
-      for (std::uint32_t layer = 0; layer < description.layers; ++layer)
-        slices_.push_back(make_view(device, image_, description.format, VK_IMAGE_VIEW_TYPE_2D,
-                                    {aspects_, level, 1, layer, 1}));
-  }
-  run_now(device, [&](VkCommandBuffer commands) {
-    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image_;
-    barrier.subresourceRange = {aspects_, 0, description.levels, 0, description.layers};
-    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    dependency.imageMemoryBarrierCount = 1;
-    dependency.pImageMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &dependency);
-  });
+  if ((description_.usage & viewed) == 0) return;
+  const VkFormat format = description_.format;
+  const VkImageViewType type = description_.layers > 1 || description_.array_view
+                                   ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                   : VK_IMAGE_VIEW_TYPE_2D;
+  const VkImageAspectFlags aspect =
+      has_depth(format) ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : aspects_;
+  const auto view = [&](VkImageAspectFlags seen, std::uint32_t levels) {
+    return make_view(device, image_, format, type, {seen, 0, levels, 0, description_.layers});
+  };
+  view_ = view(aspect, description_.levels);
+  if (has_stencil(format)) stencil_view_ = view(VK_IMAGE_ASPECT_STENCIL_BIT, 1);
+  for (std::uint32_t level = 0; level < description_.levels; ++level)
+    for (std::uint32_t layer = 0; layer < description_.layers; ++layer)
+      slices_.push_back(
+          make_view(device, image_, format, VK_IMAGE_VIEW_TYPE_2D, {aspects_, level, 1, layer, 1}));
 }
 
 ConstantArena::ConstantArena(Device& device, MemoryLedger& ledger, VkDeviceSize bytes)

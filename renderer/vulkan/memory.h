@@ -84,6 +84,7 @@ class Image {
   }
 
  private:
+  void make_views(Device& device);
   Owned<VkDeviceMemory> memory_;
   Owned<VkImage> image_;
   Owned<VkImageView> view_;

@@ -41,7 +41,7 @@ struct VertexLayout {
   std::vector<VkVertexInputAttributeDescription> attributes;
 };
 
-/// Positions stand in a buffer of their own, so that passes which need nothing else read nothing
+/// Positions have a buffer of their own, so that passes which need nothing else read nothing
 /// else.
 VertexLayout vertex_layout(VertexInput input) {
   VertexLayout layout;
@@ -56,6 +56,78 @@ VertexLayout vertex_layout(VertexInput input) {
   }
   return layout;
 }
+
+/// A GraphicsState as Vulkan takes it. Its parts point at each other: it stays where it is.
+class FixedFunctions {
+ public:
+  explicit FixedFunctions(const GraphicsState& state)
+      : vertices_(vertex_layout(state.vertex_input)), color_formats_(state.color_formats) {
+    vertex.vertexBindingDescriptionCount = static_cast<std::uint32_t>(vertices_.bindings.size());
+    vertex.pVertexBindingDescriptions = vertices_.bindings.data();
+    vertex.vertexAttributeDescriptionCount =
+        static_cast<std::uint32_t>(vertices_.attributes.size());
+    vertex.pVertexAttributeDescriptions = vertices_.attributes.data();
+    assembly.topology = state.topology;
+    viewport.viewportCount = viewport.scissorCount = 1;
+    raster.depthClampEnable = state.depth_clamp;
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1.0f;
+    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    depth.depthTestEnable = state.depth_test;
+    depth.depthWriteEnable = state.depth_write;
+    depth.depthCompareOp = state.depth_compare;
+    depth.stencilTestEnable = state.stencil_test;
+    depth.front = stencil_state(state.stencil_front);
+    depth.back = stencil_state(state.stencil_back);
+    dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
+    dynamic.pDynamicStates = dynamic_states.data();
+    set_attachments(state);
+  }
+  FixedFunctions(const FixedFunctions&) = delete;
+  FixedFunctions& operator=(const FixedFunctions&) = delete;
+
+  VkPipelineVertexInputStateCreateInfo vertex{
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
+  VkPipelineRasterizationStateCreateInfo raster{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+  VkPipelineMultisampleStateCreateInfo multisample{
+      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+  VkPipelineDepthStencilStateCreateInfo depth{
+      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  VkPipelineColorBlendStateCreateInfo blend{
+      VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
+  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
+
+ private:
+  /// Cull mode is set per draw: one pipeline serves single-sided and double-sided materials.
+  static constexpr std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                             VK_DYNAMIC_STATE_CULL_MODE};
+
+  void set_attachments(const GraphicsState& state) {
+    VkPipelineColorBlendAttachmentState attachment{};
+    attachment.blendEnable = state.blend == Blend::add;
+    attachment.srcColorBlendFactor = attachment.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+    attachment.srcAlphaBlendFactor = attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    attachment.colorBlendOp = attachment.alphaBlendOp = VK_BLEND_OP_ADD;
+    attachment.colorWriteMask = state.color_write ? 0xfu : 0u;
+    attachments_.assign(color_formats_.size(), attachment);
+    blend.attachmentCount = static_cast<std::uint32_t>(attachments_.size());
+    blend.pAttachments = attachments_.data();
+    rendering.colorAttachmentCount = static_cast<std::uint32_t>(color_formats_.size());
+    rendering.pColorAttachmentFormats = color_formats_.data();
+    if (has_depth(state.depth_format)) rendering.depthAttachmentFormat = state.depth_format;
+    if (has_stencil(state.depth_format)) rendering.stencilAttachmentFormat = state.depth_format;
+  }
+
+  VertexLayout vertices_;
+  std::vector<VkFormat> color_formats_;
+  std::vector<VkPipelineColorBlendAttachmentState> attachments_;
+};
 
 /// Shader modules live only while a pipeline is made of them.
 class StageList {
@@ -169,72 +241,19 @@ const Pipeline& PipelineCache::graphics(const ProgramSource& source, const Graph
   if (slot) return *slot;
   auto made = start(source);
   const StageList stages(device_.handle, made->program);
-  const VertexLayout vertices = vertex_layout(state.vertex_input);
-
-  VkPipelineVertexInputStateCreateInfo vertex{
-      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  vertex.vertexBindingDescriptionCount = static_cast<std::uint32_t>(vertices.bindings.size());
-  vertex.pVertexBindingDescriptions = vertices.bindings.data();
-  vertex.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(vertices.attributes.size());
-  vertex.pVertexAttributeDescriptions = vertices.attributes.data();
-  VkPipelineInputAssemblyStateCreateInfo assembly{
-      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-  assembly.topology = state.topology;
-  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
-  viewport.viewportCount = viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
-  raster.depthClampEnable = state.depth_clamp;
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0f;
-  VkPipelineMultisampleStateCreateInfo multisample{
-      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-  multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth{
-      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
-  depth.depthTestEnable = state.depth_test;
-  depth.depthWriteEnable = state.depth_write;
-  depth.depthCompareOp = state.depth_compare;
-  depth.stencilTestEnable = state.stencil_test;
-  depth.front = stencil_state(state.stencil_front);
-  depth.back = stencil_state(state.stencil_back);
-  VkPipelineColorBlendAttachmentState attachment{};
-  attachment.blendEnable = state.blend == Blend::add;
-  attachment.srcColorBlendFactor = attachment.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
-  attachment.srcAlphaBlendFactor = attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  attachment.colorBlendOp = attachment.alphaBlendOp = VK_BLEND_OP_ADD;
-  attachment.colorWriteMask = state.color_write ? 0xfu : 0u;
-  const std::vector<VkPipelineColorBlendAttachmentState> attachments(state.color_formats.size(),
-                                                                     attachment);
-  VkPipelineColorBlendStateCreateInfo blend{
-      VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-  blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
-  blend.pAttachments = attachments.data();
-  // Cull mode is set per draw: one pipeline serves single-sided and double-sided materials.
-  const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
-                                  VK_DYNAMIC_STATE_CULL_MODE};
-  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
-  dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
-  dynamic.pDynamicStates = dynamic_states.data();
-  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = static_cast<std::uint32_t>(state.color_formats.size());
-  rendering.pColorAttachmentFormats = state.color_formats.data();
-  if (has_depth(state.depth_format)) rendering.depthAttachmentFormat = state.depth_format;
-  if (has_stencil(state.depth_format)) rendering.stencilAttachmentFormat = state.depth_format;
-
+  const FixedFunctions fixed(state);
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
-  info.pNext = &rendering;
+  info.pNext = &fixed.rendering;
   info.stageCount = static_cast<std::uint32_t>(stages.stages.size());
   info.pStages = stages.stages.data();
-  info.pVertexInputState = &vertex;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &multisample;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
+  info.pVertexInputState = &fixed.vertex;
+  info.pInputAssemblyState = &fixed.assembly;
+  info.pViewportState = &fixed.viewport;
+  info.pRasterizationState = &fixed.raster;
+  info.pMultisampleState = &fixed.multisample;
+  info.pDepthStencilState = &fixed.depth;
+  info.pColorBlendState = &fixed.blend;
+  info.pDynamicState = &fixed.dynamic;
   info.layout = made->layout;
   VkPipeline pipeline = VK_NULL_HANDLE;
   check(vkCreateGraphicsPipelines(device_.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
@@ -301,7 +320,7 @@ void PipelineCache::push(VkCommandBuffer commands, const Pipeline& pipeline,
   for (std::size_t i = 0; i < reflected.size(); ++i) {
     const auto found = bindings.entries().find(reflected[i].name);
     if (found == bindings.entries().end())
-      throw std::logic_error("a shader reads " + reflected[i].name + ", which nobody bound");
+      throw std::logic_error("a shader reads " + reflected[i].name + ", which is not bound");
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     write.dstBinding = reflected[i].binding;
     write.descriptorCount = 1;

@@ -50,6 +50,71 @@ void warn_about(const json& part, const std::string& set, const std::string& nam
   }
 }
 
+/// Which ranks enter, and with what weights.
+json rank_methods() {
+  return {{"ranks", "mid-ranks among the pictures of a page"},
+          {"ranks_of",
+           "means, weighted means and order: of the digits, from 1 for the best, where all pages "
+           "have them (the 2007 study averaged digits), otherwise of mid-ranks; tests on ranks: of "
+           "mid-ranks"},
+          {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
+          {"arms",
+           "where people were assigned to several ways of giving ranks: read_right counts those "
+           "without the flag inverted, judged against the means of all arms; ci95 by Clopper and "
+           "Pearson; p of each two arms by Fisher's exact test, two-sided, and after Holm"},
+          {"repeats", "measure reliability only"},
+          {"weights",
+           "difficulty 1 to 5; weighted mean sum(w r) / sum(w), standard error HC1, effective n by "
+           "Kish; never frequencies"},
+          {"order", "by weighted mean rank"},
+          {"intervals",
+           "ci95: Student's t; bca95: bias-corrected and accelerated, participants drawn whole"},
+          {"inverted", "people turned round: rank r becomes n + 1 - r, digit d becomes 10 - d"}};
+}
+
+/// Tests of differences, and what is shown beside them.
+json test_methods() {
+  return {
+      {"paired_t",
+       "unweighted, two-sided; the 2007 study does not say whether its test was weighted"},
+      {"subsets", "maximal sets of techniques whose paired t does not differ, Bonferroni"},
+      {"runs",
+       "as tables 4.3 to 4.9 of 2007: neighbours in the order; pairs_without_run names pairs that "
+       "do not differ and share no run"},
+      {"pooled_rows",
+       "pages as if each were a participant: unsound, for comparison with 2007 only"},
+      {"friedman",
+       "tie-corrected; quadratic form with pseudo-inverse, so that incomplete blocks give Durbin's "
+       "and, with their weights, Skillings and Mack's test; permutation p up to 30 complete "
+       "blocks"},
+      {"quade", "on mid-ranks"},
+      {"wilcoxon",
+       "V = W+; zeros dropped; exact below 50 differences without ties or zeros, otherwise normal "
+       "with tie and continuity correction; p_exact_conditional permutes mid-ranks, up to 100 "
+       "differences; p_pratt ranks zeros with the others and then drops them"},
+      {"sign", "ties dropped in p, half in probability_a_better and its Clopper-Pearson interval"},
+      {"effects",
+       "dz with noncentral t; matched rank-biserial with Fisher's z; probability_a_better"},
+      {"adjustment", "Holm is primary; Bonferroni, Hochberg and Shaffer's static procedure beside"},
+      {"families", "all pairs of one table"}};
+}
+
+/// Models of what is behind the ranks, and measures of the pictures.
+json model_methods() {
+  return {{"plackett_luce",
+           "maximum likelihood with ties of any order, every page a ranking; log worths sum to 0; "
+           "se, robust_se clustered by participant, quasi_se; regularised: each technique wins and "
+           "loses half a comparison with an imaginary one"},
+          {"bradley_terry", "a tie is half a win; a check of the worths, without errors"},
+          {"jod",
+           "Thurstone's case V with the distance prior of Perez-Ortiz and Mantiuk 2017; ties are "
+           "half wins; robust_se clustered by participant, from the likelihood without the prior"},
+          {"bt500",
+           "ITU-R BT.500-13, annex 2, 2.3.1; for comparison only: in small groups people who read "
+           "the scale backwards widen its limits and pass"},
+          {"objective", "within scenes first, pooled by ranks within scenes second"}};
+}
+
 }  // namespace
 
 json counts_json(const SurveyData& data, const std::vector<Flag>& flags) {
@@ -75,68 +140,13 @@ json counts_json(const SurveyData& data, const std::vector<Flag>& flags) {
 }
 
 json methods_json(const ReportOptions& options) {
-  return {
-      {"alpha", options.plan.alpha},
-      {"seed", options.resampling.seed},
-      {"resamples", options.resampling.resamples},
-      {"permutations", options.resampling.permutations},
-      {"versions", {{"boost", boost_version()}, {"eigen", eigen_version()}}},
-      {"ranks", "mid-ranks among the pictures of a page"},
-      {"ranks_of",
-       "means, weighted means and order: of the digits, from 1 for the best, where all pages have "
-       "them (the "
-       "2007 "
-       "study averaged digits), otherwise of mid-ranks; tests on ranks: of mid-ranks"},
-      {"blocks", "participants; the pooled part takes each participant's mean mid-ranks"},
-      {"arms",
-       "where people were assigned to several ways of giving ranks: read_right counts those "
-       "without "
-       "the flag inverted, judged against the means of all arms; ci95 by Clopper and Pearson; p of "
-       "each two arms by Fisher's exact test, two-sided, and after Holm"},
-      {"repeats", "measure reliability only"},
-      {"weights",
-       "difficulty 1 to 5; weighted mean sum(w r) / sum(w), standard error HC1, effective n by "
-       "Kish; "
-       "never frequencies"},
-      {"order", "by weighted mean rank"},
-      {"intervals",
-       "ci95: Student's t; bca95: bias-corrected and accelerated, participants drawn whole"},
-      {"paired_t",
-       "unweighted, two-sided; the 2007 study does not say whether its test was weighted"},
-      {"inverted", "people turned round: rank r becomes n + 1 - r, digit d becomes 10 - d"},
-      {"subsets", "maximal sets of techniques whose paired t does not differ, Bonferroni"},
-      {"runs",
-       "as tables 4.3 to 4.9 of 2007: neighbours in the order; pairs_without_run names pairs that "
-       "do "
-       "not differ and share no run"},
-      {"pooled_rows",
-       "pages as if each were a participant: unsound, for comparison with 2007 only"},
-      {"friedman",
-       "tie-corrected; quadratic form with pseudo-inverse, so that incomplete blocks give Durbin's "
-       "and, with their weights, Skillings and Mack's test; permutation p up to 30 complete "
-       "blocks"},
-      {"quade", "on mid-ranks"},
-      {"wilcoxon",
-       "V = W+; zeros dropped; exact below 50 differences without ties or zeros, otherwise normal "
-       "with tie and continuity correction; p_exact_conditional permutes mid-ranks, up to 100 "
-       "differences; p_pratt ranks zeros with the others and then drops them"},
-      {"sign", "ties dropped in p, half in probability_a_better and its Clopper-Pearson interval"},
-      {"effects",
-       "dz with noncentral t; matched rank-biserial with Fisher's z; probability_a_better"},
-      {"adjustment", "Holm is primary; Bonferroni, Hochberg and Shaffer's static procedure beside"},
-      {"plackett_luce",
-       "maximum likelihood with ties of any order, every page a ranking; log worths sum to 0; se, "
-       "robust_se clustered by participant, quasi_se; regularised: each technique wins and loses "
-       "half a comparison with an imaginary one"},
-      {"bradley_terry", "a tie is half a win; a check of the worths, without errors"},
-      {"jod",
-       "Thurstone's case V with the distance prior of Perez-Ortiz and Mantiuk 2017; ties are half "
-       "wins; robust_se clustered by participant, from the likelihood without the prior"},
-      {"bt500",
-       "ITU-R BT.500-13, annex 2, 2.3.1; for comparison only: in small groups people who read the "
-       "scale backwards widen its limits and pass"},
-      {"objective", "within scenes first, pooled by ranks within scenes second"},
-      {"families", "all pairs of one table"}};
+  json methods = {{"alpha", options.plan.alpha},
+                  {"seed", options.resampling.seed},
+                  {"resamples", options.resampling.resamples},
+                  {"permutations", options.resampling.permutations},
+                  {"versions", {{"boost", boost_version()}, {"eigen", eigen_version()}}}};
+  for (const json& part : {rank_methods(), test_methods(), model_methods()}) methods.update(part);
+  return methods;
 }
 
 std::string data_digest(const SurveyData& data) {
