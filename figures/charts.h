@@ -28,7 +28,7 @@ struct DotPlot {
   Frame frame;
   struct Row {
     std::string label;
-    std::optional<double> value;  ///< empty: the row stands without a mark
+    std::optional<double> value;  ///< empty: the row has no mark
     std::optional<Interval> interval;
   };
   std::vector<Row> rows;  ///< from the top
@@ -106,7 +106,7 @@ struct Scatter {
 std::string draw(const Scatter& chart);
 
 /// One panel of named points and the line of those that no other beats in both directions.
-/// Labels stand beside points where all find room, otherwise in a legend.
+/// Labels are beside points where all find room, otherwise in a legend.
 struct Front {
   Frame frame;
   std::vector<std::string> series;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double least_row = 14.0;
 
-/// Where everything of a dot plot stands.
+/// Where everything of a dot plot is.
 struct Layout {
   std::vector<std::vector<std::string>> labels;
   std::vector<double> centres;
@@ -88,7 +88,7 @@ void draw_row(Drawing& drawing, const DotPlot::Row& row, const std::vector<std::
 }
 
 /// A thin line from the first to the last row, thick over runs of members: rows between that are no
-/// members stand beside the thin part.
+/// members are beside the thin part.
 void draw_bar(Drawing& drawing, const DotPlot::Bar& bar, const Layout& layout, double x) {
   if (bar.rows.empty()) return;
   constexpr double reach = 4.0;

@@ -18,7 +18,7 @@ namespace penumbra {
 
 struct TechniqueDescription;  // renderer/technique.h
 
-/// Ranges of a request; the only place where they stand.
+/// Ranges of a request; the only place that has them.
 struct RenderLimits {
   static constexpr std::uint32_t max_size = 16384;  ///< pixels, width or height
   static constexpr std::uint32_t max_light_samples = 65536;

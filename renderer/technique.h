@@ -38,7 +38,7 @@ TechniqueInput technique_input(const RenderRequest& request, const Light& light,
 /// Which instances may change what a technique returns for the surfaces that are seen.
 enum class CasterUse {
   none,  ///< none at all
-  beam,  ///< those between light and surface: the answer is exact for every point
+  beam,  ///< those between light and surface: exact for every point
   cone,  ///< those in the light's cone and around it: neighbouring directions are mixed
   all    ///< every one, wherever it is
 };

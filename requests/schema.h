@@ -18,7 +18,7 @@ nlohmann::json picture_schema();
 /// A study's `picture` with every default filled in. Throws bad_value naming `picture.FIELD`.
 nlohmann::json picture_settings(const nlohmann::json& picture);
 
-/// OpenAPI's parameters of a request that stands in a URL's query.
+/// OpenAPI's parameters of a request that is a URL's query.
 nlohmann::json query_parameters();
 
 }  // namespace penumbra::requests

@@ -60,8 +60,8 @@ json change_value(const std::string& text) {
   return value.is_discarded() ? json(text) : value;
 }
 
-/// Entry of an object, made where it is not there yet. Where a value stands instead of the object,
-/// the entry was given as a whole and in part.
+/// Entry of an object, made where it is not there yet. Where there is a value instead of the
+/// object, the entry was given as a whole and in part.
 json& entry_of(json& place, const std::string& key, const std::string& field) {
   if (!place.is_null() && !place.is_object())
     throw bad_value(field, field + " is given twice: as a whole and in part");

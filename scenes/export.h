@@ -9,7 +9,7 @@ namespace penumbra::scenes {
 
 /// The scene as a binary glTF 2.0 file with everything inside, so that others can render the same
 /// thing: lights by KHR_lights_punctual, textures as PNG. What glTF has no words for (extents,
-/// receivers, highlights, background) stands in `extras.penumbra`; a scene that is read back from
+/// receivers, highlights, background) is in `extras.penumbra`; a scene that is read back from
 /// it has the same content hash.
 std::string encode_glb(const Scene& scene);
 

@@ -40,8 +40,8 @@ std::vector<std::string> checked_pages(const Study& study);
 bool meets(const Expectation& expected, const Page& page, const PlannedPage& planned,
            const std::vector<int>& order);
 
-/// True where no two pictures of the practice page stand the wrong way round, and its best one
-/// stands before its worst.
+/// True where no two pictures of the practice page are the wrong way round, and its best one
+/// is before its worst.
 bool practice_is_right(const PlannedPage& planned, const std::vector<int>& order);
 
 /// Checks of one person. `answers` are bodies as they were sent, by position in the plan; `details`

@@ -30,7 +30,7 @@ struct EnrolmentPlan {
   std::vector<PlannedPage> pages;
 };
 
-/// Where the holder of a place stands: still answering, done, or gone.
+/// What the holder of a place is: still answering, done, or gone.
 enum class PlaceState { open, completed, dropped };
 
 /// The place of the next person: the first that was dropped, otherwise a new one. `places[p]` is

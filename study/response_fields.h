@@ -8,7 +8,7 @@
 
 namespace penumbra::study {
 
-/// A column of responses.csv and how it stands in a row.
+/// A column of responses.csv and how a row writes and reads it.
 struct Field {
   Column column;
   bool required = false;

@@ -62,7 +62,7 @@ struct Orbit {
   double distance = 1.0;           ///< of the camera from it; metres
   double elevation = 20.0;         ///< of the camera above it; degrees
   double from = -30.0;             ///< degrees from the z axis towards the x axis
-  double to = 30.0;                ///< degrees; the views stand at equal steps, both ends included
+  double to = 30.0;                ///< degrees; the views are at equal steps, both ends included
   int frames = 9;
 };
 
@@ -82,7 +82,7 @@ struct Page {
 
 /// A page with a known answer, shown first and never counted.
 struct Practice {
-  Page page;  ///< its pictures stand in the order of the right answer,
+  Page page;  ///< its pictures are in the order of the right answer,
               ///< most realistic first
 };
 

@@ -31,7 +31,7 @@ inline const std::map<std::string, double> mean_rms_y{
     {"shadow-volumes", 4.344}, {"soft-shadow-volumes-2007", 4.368}};
 
 /// A row of tables 4.3 to 4.9: a technique's weighted mean of the digits that people typed, 1 most
-/// real, and the first and last of the table's subsets that it stands in.
+/// real, and the first and last of the table's subsets that it is in.
 struct RankingRow {
   std::string technique;
   double mean = 0.0;

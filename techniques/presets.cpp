@@ -24,7 +24,7 @@ void finish_parameter(const std::string& technique, Parameter& parameter) {
   if (number && parameter.scale == ParameterScale::logarithmic && !(parameter.minimum > 0.0))
     throw std::logic_error(where + "a logarithmic range must begin above 0");
 
-  // Schemas print the default as it stands, so 1 becomes 1.0 where a real is declared.
+  // Schemas print the default as it is, so 1 becomes 1.0 where a real is declared.
   try {
     parameter.default_value = checked_value(parameter, parameter.default_value);
   } catch (const Error& error) {

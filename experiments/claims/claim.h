@@ -53,7 +53,7 @@ struct Claim {
 /// All claims, family by family.
 const std::vector<Claim>& all();
 
-/// Each family stands in a file of its own.
+/// Each family has a file of its own.
 std::vector<Claim> published_claims();
 std::vector<Claim> number_claims();
 std::vector<Claim> survey_scene_claims();

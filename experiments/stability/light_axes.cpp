@@ -19,7 +19,7 @@ Axis light_axis(const std::string& id, const std::string& title, const std::stri
           }};
 }
 
-/// Puts the light at a distance on the line that it stands on.
+/// Moves the light to a distance from the scene's middle, on its line from there.
 void put_at(Light& light, double distance) {
   light.position = scene_middle + distance * glm::normalize(light.position - scene_middle);
   light.direction = glm::normalize(scene_middle - light.position);

@@ -3,7 +3,7 @@
 #include "renderer/scene/scene.h"
 
 /// Small, hard scenes that are pushed to extremes: one matte material, flat facets, one light, one
-/// camera. All stand askew, since planes along the axes hide what normals and slopes lose.
+/// camera. All are askew, since planes along the axes hide what normals and slopes lose.
 namespace penumbra::experiments::stability {
 
 /// What a subject scene is made of, in metres; each axis changes one of these.

@@ -56,7 +56,7 @@ std::string front_figure(const std::vector<json>& rows, const Objective& objecti
     bool any = false;
     for (const std::size_t index : front_rows(own, objective.key)) {
       const double error = number_of(own[index], objective.key);
-      // A logarithmic axis has no zero: exact pictures stand in the table.
+      // A logarithmic axis has no zero: exact pictures are in the table.
       if (!(error > 0.0)) continue;
       chart.points.push_back({number_of(own[index], "frame_ms"), error, series, {}});
       any = true;
@@ -220,7 +220,7 @@ std::string bias_figure(const std::vector<json>& rows, const char* key, const ch
   figures::Scatter chart;
   chart.frame.title = words;
   chart.frame.description = std::string(words) + " over bias, strategy and map size.";
-  // Zero has no place on a logarithmic axis: it stands at the left end.
+  // Zero has no place on a logarithmic axis: it is drawn at the left end.
   constexpr double zero_at = 1e-4;
   chart.horizontal = {.title = "bias, m (0 stands at 0.0001)", .logarithmic = true};
   chart.vertical = {.title = words};

@@ -12,7 +12,7 @@ namespace penumbra::reference {
 
 using Triangle = std::array<glm::vec3, 3>;
 
-/// A box of the hierarchy. Nodes stand in depth-first order: the first child follows its parent,
+/// A box of the hierarchy. Nodes are in depth-first order: the first child follows its parent,
 /// and `next` is where a walk goes on that leaves this box aside. A walk may therefore start at any
 /// node and visit a part of the array only.
 struct Node {

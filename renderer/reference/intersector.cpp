@@ -78,7 +78,7 @@ class Gatherer {
     return out;
   }
 
-  /// Where the alphas of a texture stand; -1 is white.
+  /// Where the alphas of a texture begin; -1 is white.
   std::uint32_t alphas_of(int texture) {
     const auto known = first_alpha_.find(texture);
     if (known != first_alpha_.end()) return known->second;

@@ -80,7 +80,7 @@ uint without_holes(TrianglePlanes t, uint triangle, uint mask) {
 #endif
 
 void note_unfinished(uint node, bool done) {
-  // Some drivers end a shader's loops in silence after 65,535 rounds: an answer is only one if the walk
+  // Some drivers end a shader's loops in silence after 65,535 rounds: a result counts only if the walk
   // came to its end.
   if (node < work.end_node && !done) atomicAdd(unfinished_invocations, 1u);
 }
@@ -135,7 +135,7 @@ uint find_candidates(ivec2 texel, Shaft shaft, uint kind) {
     uint triangle = uint(max(found_triangle, 0));
     int verdict = found_triangle < 0 ? hides_none : classify(shaft, planes_of(shaft, triangle));
     is_dark = hides_the_light(verdict, triangle);
-    // A leaf's successor stands right behind it.
+    // A leaf's successor is right behind it.
     first = verdict != hides_none ? min(first, node - 1u) : first;
     end = verdict != hides_none ? node : end;
   }
@@ -154,7 +154,7 @@ uint facing(Shaft shaft, vec3 position, vec3 normal) {
 }
 #else
 #if defined(LIST_OCCLUDERS) || defined(OCCLUDERS_LISTED) || defined(SOME_OCCLUDERS_LISTED)
-// Place i of a sample is [i * work.stride + its index in the list]; counts stand behind all places.
+// Place i of a sample is [i * work.stride + its index in the list]; counts follow all places.
 layout(std430) buffer OccluderBlock { uint occluders[]; };
 layout(std430) buffer FoundBlock { uint found[]; };
 

@@ -1,6 +1,6 @@
 // Counts a side of a volume where the view ray crosses it behind the visible surface: where camera and
 // surface lie on the same side of its plane. The rasteriser's depths would do, but for surfaces that
-// the plane all but touches: there penumbra wedges must come to the same answer (wedge.frag).
+// the plane all but touches: there penumbra wedges must decide the same (wedge.frag).
 #include "renderer/shadow_volumes/deep_count.glsl"
 #include "renderer/shadow_volumes/light_side.glsl"
 

@@ -1,4 +1,4 @@
-// The shader of techniques whose whole answer is the count in the stencil.
+// The shader of techniques that return the count in the stencil.
 #include "renderer/shadow_volumes/read_stencil.glsl"
 
 float calculate_shadow(ShadowQuery query) { return count_volumes(query.pixel) == 0u ? 1.0 : 0.0; }

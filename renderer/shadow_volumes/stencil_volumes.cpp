@@ -140,7 +140,7 @@ VolumeOptions volume_options(const ParameterValues& parameters) {
 Diagnostic count_diagnostic() {
   return {"count",
           "Volumes that each sample lies in: grey none, yellow to red one to 32 and more, blue a "
-          "count that fell below nought."};
+          "count that fell below zero."};
 }
 
 /// A draw of some casters with one state.

@@ -22,7 +22,7 @@ class VolumeBounds {
   /// a directional light). Empty where the box reaches behind the light.
   std::optional<glm::vec4> end_plane(const glm::vec3& low, const glm::vec3& high) const;
 
-  /// Reversed depth just behind everything visible: where a far plane would stand.
+  /// Reversed depth just behind everything visible: where a far plane would be.
   float far_depth(const glm::dmat4& clip_from_world) const;
 
  private:

@@ -74,7 +74,7 @@ struct PassRecord {
   std::array<std::uint64_t, 8> counters{};  ///< in the order of PassCost's counts
 };
 
-/// Records passes in order and measures each. Timestamps stand at ALL_COMMANDS with a global
+/// Records passes in order and measures each. Timestamps are taken at ALL_COMMANDS with a global
 /// barrier after them, outside renderings: the only placement that blames the right pass on
 /// lavapipe.
 class Recorder {

@@ -26,7 +26,7 @@ std::string percent_decoded(const std::string& text);
 std::string lower_extension(const std::filesystem::path& file);
 
 /// The file that a reference inside another file means: percent-encoding undone, unless only a file
-/// of the name as it stands is there. Throws unreadable naming `what` where it has a scheme, is
+/// of the name as written is there. Throws unreadable naming `what` where it has a scheme, is
 /// absolute, climbs with `..`, or where links lead out of the folder.
 std::filesystem::path resolve_inside(const std::filesystem::path& folder, const std::string& name,
                                      const std::string& what);

@@ -21,7 +21,7 @@ void for_each_statement(
     std::string_view text,
     const std::function<void(const std::vector<std::string_view>& words, std::size_t line)>& take);
 
-/// The words of a statement from the one at `first` on, as they stand in the file.
+/// The words of a statement from the one at `first` on, as the file has them.
 std::string rest_of(const std::vector<std::string_view>& words, std::size_t first);
 
 /// A finite number; a comma may replace the point. Throws unreadable naming the line.

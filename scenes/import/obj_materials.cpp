@@ -137,7 +137,7 @@ void read_materials(const File& file, SideFiles& files, Scene& scene, Notes& not
   Library library;
   std::set<std::string> read;
   for (const std::string& line : file.material_libraries) {
-    // Several names may stand in a line, and a name may have spaces.
+    // A line may have several names, and a name may have spaces.
     std::istringstream words(line);
     std::vector<std::string> names{line};
     if (line.find(' ') != std::string::npos && !files.has(line))

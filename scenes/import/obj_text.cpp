@@ -72,7 +72,7 @@ void for_each_statement(
 std::string rest_of(const std::vector<std::string_view>& words, std::size_t first) {
   std::string text;
   for (std::size_t i = first; i < words.size(); ++i) {
-    // Words of one line keep the space that stands between them.
+    // Words of one line keep the space between them.
     const char* before = i > first ? words[i - 1].data() + words[i - 1].size() : nullptr;
     const auto space = before != nullptr && before < words[i].data()
                            ? static_cast<std::size_t>(words[i].data() - before)

@@ -23,7 +23,7 @@ int report(const Session& session, const Error& error) {
   return error.code == "bad_value" || error.code == "not_found" ? wrong_usage : failed;
 }
 
-/// True where --json stands among the arguments: errors of reading them keep to it as well.
+/// True where --json is among the arguments: errors of reading them keep to it as well.
 bool asks_for_json(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments)
     if (argument == "--json") return true;

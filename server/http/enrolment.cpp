@@ -1,4 +1,4 @@
-// Entering a study, and where a person stands in it.
+// Entering a study, and how far a person is in it.
 #include <algorithm>
 
 #include "server/http/body.h"

@@ -80,7 +80,7 @@ void get_export(Call& call) {
 void get_report(Call& call) {
   auto exported = export_at(call);
   call.response.status = 200;
-  // One page without scripts: its style and its figures stand in it.
+  // One page without scripts: its style and its figures are in it.
   call.response.set_header("Content-Security-Policy",
                            "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; "
                            "form-action 'none'; frame-ancestors 'none'");

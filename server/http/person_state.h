@@ -7,7 +7,7 @@
 #include "server/storage/participants.h"
 #include "study/checks.h"
 
-/// Where a person stands in a study.
+/// How far a person is in a study.
 namespace penumbra::server::http {
 
 /// Throws not_found for an unknown token, and counts it.
@@ -17,7 +17,7 @@ storage::ParticipantRecord person_at(Call& call);
 study::PersonChecks checks_of(const FrozenStudy& frozen, const storage::ParticipantRecord& person,
                               const std::vector<storage::AnswerRecord>& answers);
 
-/// How taking part stands or ended: completed, screened_out, or empty.
+/// How taking part ended: completed, screened_out, or empty.
 std::string outcome_of(const FrozenStudy& frozen, const storage::ParticipantRecord& person,
                        const std::vector<storage::AnswerRecord>& answers);
 

@@ -31,7 +31,7 @@ std::string lease_key(const std::string& lease) {
 }
 constexpr auto researcher_key = "researcher";
 
-/// The connection of a call is its client's own, unless a proxy stands between.
+/// The connection of a call is its client's own, unless a proxy is between.
 std::optional<std::string> connection_key(const Call& call) {
   if (behind_proxy(call.request)) return {};
   return "connection " + call.request.remote_addr + " " + std::to_string(call.request.remote_port);

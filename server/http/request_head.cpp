@@ -88,7 +88,7 @@ struct Fields {
   bool keep_alive = false;
 };
 
-/// Takes a framing field that may stand once.
+/// Takes a framing field that may appear once.
 void take_once(std::optional<std::string_view>& field, std::string_view value) {
   if (field) throw bad_value("Content-Length", "the length of the body is given more than once");
   field = value;

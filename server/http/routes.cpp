@@ -42,7 +42,7 @@ std::optional<std::map<std::string, std::string>> values_of(
   return values;
 }
 
-/// The route's path stands in the log, never the request's: paths hold tokens.
+/// The route's path is logged, never the request's: paths hold tokens.
 void log_call(const Call& call, const Match& found, double ms) {
   spdlog::info("{} {} {} {:.1f} ms", call.request.method,
                found.route != nullptr ? found.route->path : "(no route)", call.response.status, ms);

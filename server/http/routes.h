@@ -14,7 +14,7 @@ struct Service;
 
 /// Who may call a route.
 enum class Access {
-  anyone,      ///< what participants need; their tokens and codes stand in the path
+  anyone,      ///< what participants need; their tokens and codes are in the path
   laboratory,  ///< anyone where only this machine reaches the server, otherwise as `researcher`
   researcher,  ///< holder of the access token, by header or session cookie
 };

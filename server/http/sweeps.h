@@ -31,7 +31,7 @@ class SweepRequests {
   nlohmann::json measure;
 };
 
-/// Where a sweep stands.
+/// How far a sweep is.
 struct SweepState {
   std::string id;
   std::size_t total = 0;

@@ -28,7 +28,7 @@ void QueuedRenderService::work() {
   Crewman worker;
   Lock lock(mutex_);
   while (!stopping_) {
-    // A worker stands ready before there is work: the first picture need not wait for the driver.
+    // A worker is ready before there is work: the first picture need not wait for the driver.
     if (!worker || !worker->alive()) {
       worker.reset();
       worker = hire(lock);

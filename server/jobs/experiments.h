@@ -23,7 +23,7 @@ struct ExperimentOptions {
   double deadline_s = 24.0 * 3600.0;  ///< of one experiment; what it measured is kept
 };
 
-/// Where an experiment stands.
+/// How far an experiment is.
 struct ExperimentState {
   std::string id;
   std::string kind;

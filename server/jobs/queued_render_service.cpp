@@ -150,7 +150,7 @@ RenderRecord QueuedRenderService::enqueue(CanonicalRequest request,
   }
   if (drawn) {
     ++counters_["cache_hits"];
-    over_.erase(request.id);  // an old failure to measure it is no longer what stands there
+    over_.erase(request.id);  // an old failure to measure it no longer counts
     return *known;
   }
   if (draining_) throw busy("the server is shutting down");

@@ -15,7 +15,7 @@
 
 namespace penumbra::server {
 
-/// Where a render stands.
+/// How far a render is.
 struct RenderRecord {
   std::string id;          ///< hash of the canonical request: also cache key and ETag
   std::string status;      ///< queued, running, done, failed, cancelled
@@ -66,7 +66,7 @@ class RenderService {
   /// Throws what `submit` would for a request that says something wrong; draws nothing.
   virtual void check(const nlohmann::json& request) = 0;
 
-  /// As it stands now; empty for an unknown id.
+  /// As it is now; empty for an unknown id.
   virtual std::optional<RenderRecord> find(const std::string& id) = 0;
 
   /// Blocks until the render is over or `seconds` (steady clock) have passed.

@@ -13,7 +13,7 @@
 namespace penumbra::server::storage {
 namespace {
 
-constexpr int busy_ms = 3000;  // a lock held longer than this is somebody else's trouble
+constexpr int busy_ms = 3000;               // a lock held longer than this is not waited for
 constexpr std::size_t largest_batch = 256;  // changes that share one commit
 constexpr int purge_busy_ms = 20;           // answers wait no longer for a withdrawal to be cleared
 constexpr auto purge_pause = std::chrono::milliseconds(250);

@@ -56,7 +56,7 @@ struct Differing {
 };
 Differing differing(const nlohmann::json& part, double alpha);
 
-/// Entry of a list of pairs for the techniques of another, whichever stands first there.
+/// Entry of a list of pairs for the techniques of another, whichever is first there.
 const nlohmann::json* pair_of(const nlohmann::json& list, const std::string& a,
                               const std::string& b);
 

@@ -24,7 +24,7 @@ double density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2.0 * 3.14159265358979323846);
 }
 
-/// A pair that was compared, seen from `a`. Every pair stands once in either direction, as the
+/// A pair that was compared, seen from `a`. Every pair is there once in either direction, as the
 /// prior is over both.
 struct Comparison {
   Eigen::Index a = 0;

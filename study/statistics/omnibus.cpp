@@ -9,7 +9,7 @@ namespace penumbra::study::statistics {
 
 namespace {
 
-/// The values of a block and the columns they stand in.
+/// The values of a block and the columns they are in.
 struct Block {
   std::vector<std::size_t> columns;
   std::vector<double> ranks;

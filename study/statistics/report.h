@@ -37,7 +37,7 @@ ReportOptions report_options(const Study& study);
 
 /// The document of `penumbra statistics --json` and results.json. Blocks are participants: the
 /// pooled part works on each participant's mean mid-ranks. Rows of repeated pages only measure
-/// reliability. What cannot be computed is null and a `reason` stands beside it.
+/// reliability. What cannot be computed is null and a `reason` is beside it.
 nlohmann::json survey_report(const statistics::SurveyData& data, const ReportOptions& options);
 nlohmann::json statistics_report(const std::vector<ResponseRow>& rows,
                                  const ReportOptions& options);

@@ -189,7 +189,7 @@ std::vector<Agreement> leave_one_out(const SurveyData& data) {
     if (page.repeat > 0) continue;
     auto sums = all.sums[page.scene];
     auto counts = all.counts[page.scene];
-    // Pages of a participant stand together; those of the same scene leave together.
+    // Pages of a participant are together; those of the same scene leave together.
     std::size_t first = i;
     while (first > 0 && data.pages[first - 1].participant == page.participant) --first;
     for (std::size_t j = first;

@@ -101,7 +101,7 @@ struct ParticipantTable {
 };
 
 /// What a row of the table is. Pages as rows take a person's pages for so many people: tests on
-/// them reject too often (van Sambeek 2007, table 4.9), so that they only ever stand beside the
+/// them reject too often (van Sambeek 2007, table 4.9), so that they are only ever shown beside the
 /// others.
 enum class Blocks { participants, pages };
 

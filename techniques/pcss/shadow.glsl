@@ -58,7 +58,7 @@ ivec2 texel_at(MapPoint point, ExtentOnMap extent, vec2 tap, float reach) {
   return ivec2(floor(point.texel + reach * (tap.x * extent.right + tap.y * extent.up)));
 }
 
-// How far casters that may block the light lie from the receiver's place: what stands in a region
+// How far casters that may block the light lie from the receiver's place: what is in a region
 // bounds how wide the region need be, and so on until it shrinks no more.
 float reach_of_casters(MapPoint point, ExtentOnMap extent) {
   float widest = reach(point, point.range.x);
@@ -105,7 +105,7 @@ bool is_risen(ShadowQuery query, ExtentOnMap extent, vec2 tap) {
   return dot(query.normal, to_light + tap.x * extent.world_right + tap.y * extent.world_up) > 0.0;
 }
 
-// Share of the extent that stands over the receiver's horizon.
+// Share of the extent that is over the receiver's horizon.
 float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
   if (parameter_horizon == 0) return 1.0;
   float height = dot(query.normal, query.to_light) * extent_distance(query.light_distance);

@@ -38,7 +38,7 @@ test("a study of three arms is written from its template", async () => {
   const study = JSON.parse(await text.inputValue());
   assert.deepEqual(study.arms, [{ id: "one-is-best", widget: "numeric", best_digit: 1 },
     { id: "nine-is-best", widget: "numeric", best_digit: 9 }, { id: "shelves", widget: "shelves" }]);
-  // As it stands it takes long to draw: fewer and smaller pictures here.
+  // As it is it takes long to draw: fewer and smaller pictures here.
   const { picture, techniques, pages } = small_study("any");
   await text.fill(JSON.stringify({ ...study, picture, techniques, pages }));
   await page.getByRole("button", { name: "Check and store as draft" }).click();

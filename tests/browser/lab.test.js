@@ -36,7 +36,7 @@ test("a researcher publishes a study, people answer, and the means appear", asyn
   assert.deepEqual(await violations(page), []);
   await page.locator(".studies .card", { hasText: study }).getByRole("link").click();
   await page.getByRole("button", { name: "Render the pictures and publish" }).click();
-  // Whatever the page says in red while pictures are drawn is kept, however short it stands there.
+  // Whatever the page says in red while pictures are drawn is kept, however short it is there.
   await page.evaluate(() => {
     window.alarms = [];
     new MutationObserver(() => document.querySelectorAll("main .problems:not(:empty)").forEach((problem) =>

@@ -14,7 +14,7 @@ class ExperimentsTest : public RunningServer {
     return researcher->Post("/api/v1/experiments", request.dump(), "application/json");
   }
 
-  /// The experiment once it is over, or as it stands after a minute and a half.
+  /// The experiment once it is over, or as it is after a minute and a half.
   json over(const std::string& id) {
     json state;
     for (int i = 0; i < 900; ++i) {

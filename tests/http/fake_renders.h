@@ -15,7 +15,7 @@
 
 namespace penumbra::server::http {
 
-/// Stands in for the worker processes: pictures of one grey value per technique. The scene's name
+/// In place of the worker processes: pictures of one grey value per technique. The scene's name
 /// says how a render goes: `slow` stays queued until `finish`, `broken` fails, `full` finds no
 /// room, `wide` is a bad value; every other is done at once.
 class FakeRenders : public RenderService {

@@ -112,7 +112,7 @@ TEST_F(Renders, CanBeCancelledByTheirLeaseFromAnywhere) {
       body_of(post("/api/v1/renders", {{"scene", "slow"}, {"technique", "none"}}), 202, "Render");
   const std::string path = asked["links"]["self"];
   EXPECT_EQ(asked["links"]["cancel"], path + "?lease=" + asked["lease"].get<std::string>());
-  // It is told to the one who posted, and stands nowhere else.
+  // It is told to the one who posted, and is nowhere else.
   EXPECT_FALSE(body_of(client->Get(path), 200, "Render").contains("lease"));
   httplib::Client other("127.0.0.1", server->port());
   EXPECT_EQ(

@@ -148,7 +148,7 @@ TEST_F(RenderServiceTest, lets_nothing_run_beside_a_measurement) {
     ids.push_back(service->submit(request(74 + i, Behaviour::behaves, 60)).id);
   for (const std::string& id : ids) EXPECT_EQ(service->wait(id, patience_s)->status, "done");
 
-  // Between the measurement's beginning and end stands no other line.
+  // Between the measurement's beginning and end is no other line.
   const std::vector<std::string> lines = log("");
   const auto begin = std::find_if(lines.begin(), lines.end(), [&](const std::string& line) {
     return line.starts_with("begin " + alone);

@@ -90,24 +90,30 @@ export function violations(rooms, files) {
   return found;
 }
 
+/// Folders at the root that no row names; what begins with a dot is none of the project's rooms.
+export function unnamed_folders(rooms, names) {
+  const folders = new Set(names.filter((name) => /^[^./][^/]*\//.test(name)).map((name) => `${name.split("/")[0]}/`));
+  const named = (folder) => rooms.some((room) => room.paths.some((path) => path.startsWith(folder)));
+  return [...folders].filter((folder) => !named(folder)).map((folder) => `${folder}: no row of the table names it`);
+}
+
 function main() {
   const root = new URL("../../", import.meta.url);
-  const names = execFileSync(
-    "git",
-    ["ls-files", "--cached", "--others", "--exclude-standard"].concat(
-      ["h", "cpp", "glsl", "vert", "frag", "geom", "comp"].map((end) => `*.${end}`),
-    ),
-    { cwd: root, encoding: "utf8", maxBuffer: 1 << 26 },
-  );
+  const names = execFileSync("git", ["ls-files", "--cached", "--others", "--exclude-standard"], {
+    cwd: root,
+    encoding: "utf8",
+    maxBuffer: 1 << 26,
+  }).split("\n");
   const files = {};
-  for (const name of names.split("\n").filter(Boolean)) {
+  for (const name of names.filter((each) => /\.(h|cpp|glsl|vert|frag|geom|comp)$/.test(each))) {
     try {
       files[name] = readFileSync(new URL(name, root), "utf8");
     } catch (error) {
       if (error.code !== "ENOENT") throw error; // removed, but still in the index
     }
   }
-  const found = violations(rooms_of(readFileSync(new URL("CONTRIBUTING.md", root), "utf8")), files);
+  const rooms = rooms_of(readFileSync(new URL("CONTRIBUTING.md", root), "utf8"));
+  const found = [...violations(rooms, files), ...unnamed_folders(rooms, names)];
   for (const line of found) console.error(line);
   process.exitCode = found.length > 0 ? 1 : 0;
 }

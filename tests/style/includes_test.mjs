@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { rooms_of, violations } from "./includes.mjs";
+import { rooms_of, unnamed_folders, violations } from "./includes.mjs";
 
 const table = `
 | folder | what it knows | what it may use |
@@ -32,6 +32,11 @@ test("a folder without a row, and a row for a folder that is not there, are refu
   assert.deepEqual(violations(rooms, { "new/a.cpp": "" }), ["new/a.cpp: no row of the table has it"]);
   const wrong = rooms_of(table.replace("`low/*`", "`lower/`"));
   assert.deepEqual(violations(wrong, {}), ["high/ may use lower/, which has no row"]);
+});
+
+test("a folder of no code needs a row as well", () => {
+  assert.deepEqual(unnamed_folders(rooms, ["README.md", ".ci/run", "low/deep/b.h", "tests/a.sh"]), []);
+  assert.deepEqual(unnamed_folders(rooms, ["new/a.md", "new/b.md"]), ["new/: no row of the table names it"]);
 });
 
 test("rooms that use each other are refused", () => {

@@ -20,6 +20,17 @@ test("each word is found, over the end of a line too, and named with its line", 
   ]);
 });
 
+test("texts that the program shows are read too, those of tests and pages are not", () => {
+  const source = 'fail("a name, which nobody bound");\nf("whatever else");\n';
+  assert.deepEqual(unplain("a.cpp", source), ['a.cpp:1: "nobody" in a text; write none, no one, or the passive']);
+  for (const file of ["tests/a.cpp", "web/a.js"]) assert.deepEqual(unplain(file, source), []);
+});
+
+test("places that things stand at are silent, states are not", () => {
+  assert.deepEqual(unplain("a.h", "// The lamp stands on a table, beside which a chair stands.\n"), []);
+  assert.deepEqual(unplain("a.h", "// The name as it stands.\n"), ['a.h:1: "as it stands" in a comment; write as it is, or as written']);
+});
+
 test("the same words in other meanings are silent", () => {
   assert.deepEqual(unplain("a.cpp", "// Nothing else changes; answers of people stand in the table, and everything else stays.\n"), []);
 });

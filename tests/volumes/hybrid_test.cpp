@@ -75,7 +75,7 @@ TEST(Hybrid, removes_the_acne_of_a_map_without_bias) {
   EXPECT_LT(false_shadow("shadow-volumes", {}), 0.001);
 }
 
-/// Number that stands before " %" after some words of the first note that has them.
+/// Number before " %" after some words of the first note that has them.
 double percentage_after(const RenderResult& result, const std::string& words) {
   for (const std::string& note : result.notes)
     if (const auto at = note.find(words); at != std::string::npos)

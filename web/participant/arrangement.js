@@ -1,4 +1,4 @@
-// Where each picture stands: which shelf, or none yet. Knows nothing of the screen.
+// Where each picture is: which shelf, or none yet. Knows nothing of the screen.
 
 export class Arrangement {
   /// `slots` in the order shown; there are as many shelves as pictures. Shelf 0 is most realistic.

@@ -14,7 +14,7 @@ export class Glance {
     this.element = h("div", { class: "glance", "aria-hidden": "true", hidden: true }, this.image, this.caption);
   }
 
-  /// Shows `button`'s picture when rested on; `caption()` is what stands below it.
+  /// Shows `button`'s picture when rested on; `caption()` is what is below it.
   attach(button, caption) {
     const offer = () => this.offer(button, caption);
     const withdraw = () => this.withdraw();

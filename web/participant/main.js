@@ -110,7 +110,7 @@ class Course {
     await this.go_on(null);
   }
 
-  /// Shows `wanted` if it may be shown yet, otherwise where the person stands.
+  /// Shows `wanted` if it may be shown yet, otherwise what the person has reached.
   async go_on(wanted) {
     const { person } = this;
     this.use_language(person.entry.language);

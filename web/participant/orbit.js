@@ -2,7 +2,7 @@
 
 import { h } from "/assets/shared/dom.js";
 
-/// An image of a picture that turns with its page, wherever it stands.
+/// An image of a picture that turns with its page, wherever it is.
 export const turning_image = (picture, attributes) => h("img", { src: picture.url, data: { turns: picture.slot },
   // A view that was loaded comes up at once, without a moment in which there is none.
   decoding: picture.frames ? "sync" : null, ...attributes });

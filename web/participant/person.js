@@ -91,7 +91,7 @@ export class Person {
     this.entry = await get(this.path);
   }
 
-  /// Where the person stands now, as far as the server can be asked.
+  /// What the person has reached, as far as the server can be asked.
   async look() {
     try {
       this.entry = await get(this.path);

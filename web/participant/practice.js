@@ -3,7 +3,7 @@
 import { h } from "/assets/shared/dom.js";
 import { from_best } from "./numeric.js";
 
-/// Whether no two pictures stand the wrong way round, and the best stands before the worst. `places`
+/// Whether no two pictures are the wrong way round, and the best is before the worst. `places`
 /// has a number per slot, the lowest is most realistic.
 export function is_right(right_order, places) {
   const given = right_order.map((slot) => places[slot]);

@@ -1,5 +1,5 @@
 // What must outlive this page: values and the outbox in IndexedDB, drafts beside them. Where a browser
-// refuses one (some private windows), memory stands in and only a reload can lose an answer that has
+// refuses one (some private windows), memory keeps it and only a reload can lose an answer that has
 // not left yet.
 
 const name = "penumbra-survey";
@@ -122,7 +122,7 @@ export class Drafts {
     try {
       text = localStorage.getItem(key);
     } catch {
-      // Forbidden: memory answers.
+      // Forbidden: memory keeps it.
     }
     return text === null ? this.memory.get(key) : JSON.parse(text);
   }

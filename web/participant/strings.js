@@ -1,5 +1,5 @@
 // Every text of the interface in every language. Texts of a study come from the server.
-// Near pictures no digit may stand: places on the scale are named in words.
+// Near pictures no digit may be: places on the scale are named in words.
 
 const english_ordinals = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth",
   "ninth", "tenth", "eleventh", "twelfth"];

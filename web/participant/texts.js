@@ -1,6 +1,6 @@
 // The study's texts in one language, by the names the pages use.
 
-/// `welcome` is what GET /s/{study}/welcome answers.
+/// `welcome` is what GET /s/{study}/welcome returns.
 export function texts_of(welcome, language) {
   const texts = welcome.texts[language] ?? welcome.texts[welcome.languages[0]];
   const one = (by_language) => by_language[language] ?? by_language[welcome.languages[0]];

@@ -8,7 +8,7 @@ import { fit_to_device_pixels } from "./pixels.js";
 const zooms = [1, 2, 4, 8];  // device pixels per picture pixel: whole numbers keep every pixel equal
 
 export class Viewer {
-  /// Opens over the page. `place_text(slot)` says where a picture stands, `shelf_of(slot)` is its shelf
+  /// Opens over the page. `place_text(slot)` says where a picture is, `shelf_of(slot)` is its shelf
   /// from 0 to `lowest`, or null. `on_flip` and `on_show(slot)` are told what was looked at. `orbit`
   /// turns the pictures, where they can be turned.
   constructor({ pictures, strings, orbit, shelf_of, lowest, place_text, on_flip, on_show }) {
@@ -83,7 +83,7 @@ export class Viewer {
     this.dialog.remove();
   }
 
-  /// The chosen picture comes up; the one before it stands ready for flipping, or beside it.
+  /// The chosen picture comes up; the one before it is ready for flipping, or beside it.
   choose(slot) {
     if (slot === this.shown) return;
     this.other = this.shown;
@@ -98,7 +98,7 @@ export class Viewer {
     this.on_flip();
   }
 
-  /// Beside the picture shown stands the one seen before it, or the next one.
+  /// Beside the picture shown is the one seen before it, or the next one.
   set_beside(beside) {
     if (beside && this.other === null) {
       const slots = [...this.pictures.keys()];

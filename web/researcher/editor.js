@@ -10,7 +10,7 @@ function faults_of(error) {
   return error.errors?.length ? error.errors : [{ field: "", message: words_of(error) }];
 }
 
-/// The faults in words; `to_line(fault)` makes the button that leads to where one stands in the text.
+/// The faults in words; `to_line(fault)` makes the button that leads to where one is in the text.
 function faults_list(faults, to_line) {
   const item = (fault) => [fault.field ? [h("code", {}, fault.field), ": "] : null, fault.message, to_line(fault)];
   return faults.length === 1 && !faults[0].field ? h("p", {}, item(faults[0]))
@@ -27,7 +27,7 @@ function select_in(field, [from, to]) {
   field.scrollLeft = 0;
 }
 
-/// Faults with where they stand in the text, where that is known.
+/// Faults with where they are in the text, where that is known.
 const with_places = (faults, text) => faults.map((fault) => ({ ...fault,
   place: fault.place ?? (text && fault.field ? place_of(text, fault.field) : null) }));
 
@@ -55,7 +55,7 @@ async function store(study_file, tell) {
   }
 }
 
-/// Stores a file. Its faults stand in `outcome`, with their lines where it is a text.
+/// Stores a file. Its faults are in `outcome`, with their lines where it is a text.
 export async function store_file(file, outcome) {
   outcome.replaceChildren();
   const text = file.name.toLowerCase().endsWith(".zip") ? null : await file.text();
@@ -66,7 +66,7 @@ export async function store_file(file, outcome) {
 /// A name for a picture that a study can have as id.
 const picture_id = (name) => name.replace(/\.[^.]*$/, "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 64) || "picture";
 
-/// Own pictures: uploaded from here, and written into the study's text where its cursor stands.
+/// Own pictures: uploaded from here, and written into the study's text where its cursor is.
 function own_pictures(text) {
   const list = h("ul", { class: "own-pictures" });
   const state = h("p", { role: "status" });

@@ -84,7 +84,7 @@ export class Lens {
     this.draw();
   }
 
-  /// Shows B where A stands, and A where B does, so that a difference moves.
+  /// Shows B where A is, and A where B is, so that a difference moves.
   flip() {
     this.flipped = !this.flipped;
     for (const index of [0, 1]) {

@@ -1,4 +1,4 @@
-// Sliders for the lights of a scene: where each stands, or where distant light comes from.
+// Sliders for the lights of a scene: where each is, or where distant light comes from.
 
 import { h } from "/assets/shared/dom.js";
 import { significant } from "./words.js";

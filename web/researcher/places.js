@@ -1,4 +1,4 @@
-// Where things stand in a JSON text, so that a fault is found without counting brackets.
+// Where things are in a JSON text, so that a fault is found without counting brackets.
 
 /// {path: [from, to]} of every value of a valid JSON text; paths as the server names faults, such as
 /// `pages[2].techniques[0]`. The text itself has the path "".
@@ -54,7 +54,7 @@ export function places_of(text) {
   return places;
 }
 
-/// Where `field` stands, otherwise the innermost thing around it that is there; null for the whole.
+/// Where `field` is, otherwise the innermost thing around it that is there; null for the whole.
 export function place_of(text, field) {
   const places = places_of(text);
   for (let path = field; path; path = path.replace(/(\.[^.[\]]*|\[\d+\]|^[^.[\]]*)$/, "")) {

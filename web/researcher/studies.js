@@ -35,7 +35,7 @@ function upload(studies, templates) {
     outcome);
 }
 
-/// What stands beside the version that a study is known by.
+/// What is shown beside the version that a study is known by.
 function beside(study) {
   const draft = study.versions.find((version) => version.version !== study.version && version.status === "draft");
   return draft ? h("small", {}, `with a draft of version ${draft.version}`) : null;

@@ -61,7 +61,7 @@ export function paragraphs(text) {
     .map((part) => h("p", {}, part.trim()));
 }
 
-/// Replaces what stands in `container` and moves the focus to the new heading, so that a screen
+/// Replaces what is in `container` and moves the focus to the new heading, so that a screen
 /// reader starts where a sighted reader does.
 export function show(container, ...children) {
   container.replaceChildren(...children.flat(Infinity).filter(Boolean));

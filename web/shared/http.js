@@ -23,7 +23,7 @@ async function failure_of(response) {
   try {
     error = (await response.json()).error ?? {};
   } catch {
-    // A proxy in between answers HTML: the status alone must do.
+    // A proxy in between returns HTML: the status alone must do.
   }
   const after = Number(response.headers.get("Retry-After"));
   return new ApiError(error.message ?? `${response.status} ${response.statusText}`, {
