@@ -13,7 +13,7 @@ struct LayoutRow {
   std::map<std::string, std::vector<std::string>> lights;  ///< by layout; none: it is not served
 };
 
-/// Every technique that has a map against every layout there is, from what they declare.
+/// Every technique that has a map against every layout there is, as techniques require it.
 std::vector<LayoutRow> layout_matrix();
 
 }  // namespace penumbra::techniques

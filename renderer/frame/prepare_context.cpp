@@ -4,9 +4,9 @@
 
 namespace penumbra {
 
-std::uint64_t PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
-                                           const vulkan::Bindings& bindings,
-                                           const glm::mat4& clip_from_world) {
+DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                                          const vulkan::Bindings& bindings,
+                                          const glm::mat4& clip_from_world) {
   vulkan::GraphicsState state = program.state;
   const auto pipeline_for = [&](bool masked) -> const vulkan::Pipeline& {
     vulkan::ProgramSource source{program.stages, program.preamble};
@@ -24,9 +24,12 @@ std::uint64_t PrepareContext::draw_casters(vulkan::Commands& commands, const Cas
   const auto& ranges = scene.ranges();
   const auto sides = side_planes(glm::dmat4(clip_from_world));
   const auto drawn = [&](const DrawRange& range) {
-    return (range.casts_shadow || program.all_surfaces) && may_touch(range.box(), sides);
+    if (!range.casts_shadow && !program.all_surfaces) return false;
+    const Bounds box = range.box();
+    if (!program.cull_by_spheres) return may_touch(box, sides);
+    return may_touch(box.center(), 0.5 * glm::length(box.size()), sides);
   };
-  std::uint64_t drawn_indices = 0;
+  DrawnCasters counted;
   for (std::size_t i = 0; i < ranges.size();) {
     const DrawRange& first = ranges[i];
     if (!drawn(first)) {
@@ -50,10 +53,11 @@ std::uint64_t PrepareContext::draw_casters(vulkan::Commands& commands, const Cas
     if (first.masked) commands.constants(first.material);
     commands.cull(first.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
-    drawn_indices += count;
+    counted.triangles += count / 3;
+    counted.ranges += next - i;
     i = next;
   }
-  return drawn_indices / 3;
+  return counted;
 }
 
 }  // namespace penumbra

@@ -19,6 +19,13 @@ struct CasterProgram {
   vulkan::GraphicsState state;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< of single-sided materials; others are never culled
   bool all_surfaces = false;                 ///< those too that cast no shadow
+  bool cull_by_spheres = false;              ///< around the boxes that are culled by otherwise
+};
+
+/// What draw_casters drew.
+struct DrawnCasters {
+  std::uint64_t triangles = 0;
+  std::uint64_t ranges = 0;  ///< of the index buffer: an instance has one for each material
 };
 
 /// What a technique may use in `prepare`: the device, the scene, its light, the geometry buffer,
@@ -56,10 +63,9 @@ class PrepareContext {
   }
 
   /// Draws all casters that may touch the clip volume of `clip_from_world`; inside a rendering.
-  /// `bindings` are the program's own resources; those of the frame are added. Returns the number
-  /// of triangles.
-  std::uint64_t draw_casters(vulkan::Commands& commands, const CasterProgram& program,
-                             const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
+  /// `bindings` are the program's own resources; those of the frame are added.
+  DrawnCasters draw_casters(vulkan::Commands& commands, const CasterProgram& program,
+                            const vulkan::Bindings& bindings, const glm::mat4& clip_from_world);
 };
 
 }  // namespace penumbra

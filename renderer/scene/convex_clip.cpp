@@ -1,5 +1,6 @@
 #include "renderer/scene/convex_clip.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra {
@@ -84,6 +85,12 @@ bool may_touch(const Bounds& box, std::span<const HalfSpace> sides) {
     if (glm::dot(side, glm::dvec4(innermost, 1.0)) < 0.0) return false;
   }
   return true;
+}
+
+bool may_touch(const glm::dvec3& center, double radius, std::span<const HalfSpace> sides) {
+  return std::all_of(sides.begin(), sides.end(), [&](const HalfSpace& side) {
+    return glm::dot(side, glm::dvec4(center, 1.0)) >= -radius * glm::length(glm::dvec3(side));
+  });
 }
 
 bool contains(const Bounds& box, const glm::dvec3& point) {

@@ -37,6 +37,8 @@ HalfSpace near_plane(const glm::dmat4& clip_from_world);
 
 /// False only if the box lies wholly outside one of the half-spaces.
 bool may_touch(const Bounds& box, std::span<const HalfSpace> sides);
+/// The same of a sphere.
+bool may_touch(const glm::dvec3& center, double radius, std::span<const HalfSpace> sides);
 
 bool contains(const Bounds& box, const glm::dvec3& point);
 

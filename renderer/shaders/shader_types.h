@@ -62,8 +62,16 @@ struct MaterialData {
   vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
 };
 
-// Most views of a map: cascades, or the six faces around a point light.
-PENUMBRA_CONSTANT int max_map_views = 8;
+// Most views of a map: tiles, cascades, or the six faces around a point light.
+PENUMBRA_CONSTANT int max_map_views = 16;
+
+// Tiles of an irregular map: 4 x 4 of one width in metres. Texels along a side by rank of
+// importance (Alecu 2014, 4.2); all of them in 32 bits take 6,860,800 bytes.
+PENUMBRA_CONSTANT int tiles_a_side = 4;
+PENUMBRA_CONSTANT int tile_count = 16;
+PENUMBRA_CONSTANT int largest_tile = 1024;
+PENUMBRA_CONSTANT int tile_sizes[tile_count] = {1024, 512, 512, 256, 128, 128, 128, 128,
+                                                64,   64,  32,  32,  16,  16,  16,  16};
 
 /// One view from the light. A point x of it lies at origin + s (forward + a right + b up) when
 /// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the
@@ -77,6 +85,7 @@ struct MapView {
   vec4 forward;    // xyz unit, w size of a texel at unit distance (perspective) or anywhere, m
   vec4 range;      // x near, y far, m along forward; z 1 / (far - near); w bias of every depth, m
   vec4 choice;     // what the layout's GLSL chooses views by
+  vec4 texels;     // x along a side; y the first one's place, where all share one buffer
   vec4 unwarp[3];  // columns, xyz each: from a place (u, v, 1) in texels to the unwarped map's,
                    // times a common factor
 };
@@ -84,6 +93,21 @@ struct MapView {
 struct MapData {
   MapView views[max_map_views];
   vec4 texel;  // x texels along a view's side, y kernel radius in texels, z views, w slope scale
+};
+
+/// How tiles are ranked and given their ranges.
+struct TileRules {
+  vec4 importance;  // x sum for an importance of 1, y gain, z range, m
+  vec4 granted;   // of comparisons: x m, y m for each m of a texel; z of depths: m, w m for each m
+                  // of the range's end
+  uvec4 options;  // x ranges follow what is seen, y tiles that show nothing are not drawn, z texels
+                  // of all tiles where these are shared in proportion, otherwise 0
+};
+
+/// What is seen of a tile. Places of floats in the order of all floats.
+struct TileSums {
+  uvec4 seen;  // x importance, y complement of the least distance's place, z the greatest's; y and
+               // z 0 where nothing is seen that faces the light
 };
 
 /// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions

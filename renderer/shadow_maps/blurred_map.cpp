@@ -55,6 +55,7 @@ bool has_mips(const BlurSettings& settings, const ParameterValues& parameters) {
 
 void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settings,
                          Requirements& needs) {
+  require_image(input, "which no filter can blur beforehand");
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t bytes =
       std::uint64_t{size} * size * view_count(input) * vulkan::texel_bytes(settings.format);

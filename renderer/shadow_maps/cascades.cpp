@@ -39,7 +39,8 @@ void set_choice(shader::MapView& view, const std::vector<Slice>& slices, std::si
 }
 
 std::vector<Parameter> split_parameters() {
-  return {integer("cascades", 4, {2, shader::max_map_views},
+  constexpr std::int64_t most_cascades = 8;
+  return {integer("cascades", 4, {2, most_cascades},
                   "Cascades that the depth before the camera is cut into, each map_size wide."),
           real("split_lambda", 0.5, {0.0, 1.0},
                "Where cascades end. 0: all are equally deep. 1: each is as many times deeper than "

@@ -43,7 +43,9 @@ std::vector<Parameter> layout_parameters() {
 
 std::vector<Parameter> map_parameters() {
   std::vector<Parameter> list;
-  list.push_back(integer("map_size", 512, {1, 16384}, "Width and height of the shadow map.")
+  list.push_back(integer("map_size", 512, {1, 16384},
+                         "Width and height of the shadow map; layouts of tiles have sizes of their "
+                         "own.")
                      .log()
                      .in("texels"));
   for (const Parameter& parameter : layout_parameters()) list.push_back(parameter);
@@ -111,10 +113,16 @@ std::vector<Parameter> comparing_map_parameters() {
 
 std::vector<Diagnostic> map_diagnostics(const std::vector<Diagnostic>& own) {
   std::vector<Diagnostic> list = {
-      {"map", "The depth map's first view as the light sees it: near is dark, far is bright."},
+      {"map",
+       "The depth map's first view as the light sees it, or all tiles side by side: near is dark, "
+       "far is bright."},
+      {"tiles",
+       "All views side by side. The frame of each tells its texels along a side: red 1024, yellow "
+       "256, green 128, cyan 64, blue 16. Within, how bright tells how much a tile matters."},
       {"views",
        "Which view of the map tells of each pixel, by colour: red, yellow, green, cyan, blue, "
-       "magenta, orange, grey; mixed where two do, dark in shadow, black where none does."},
+       "magenta, orange, grey, and other hues of tiles; mixed where two do, dark in shadow, black "
+       "where none does."},
       {"texels-per-pixel",
        "Texels of the map along the longer side of what a pixel covers, by colour: green 1, yellow "
        "1/4, red 1/16 and fewer (the map is coarser than the picture), cyan 4, blue 16 and more; "
@@ -149,11 +157,11 @@ void note_open_casters(PrepareContext& context) {
 }
 
 /// What the views of a map draw; what touches several is drawn as often.
-void note_triangles(PrepareContext& context, const std::vector<std::uint64_t>& triangles) {
-  if (triangles.size() < 2) return;
+void note_triangles(PrepareContext& context, const std::vector<DrawnCasters>& drawn) {
+  if (drawn.size() < 2) return;
   std::string counts;
-  for (const std::uint64_t count : triangles)
-    counts += (counts.empty() ? "" : ", ") + std::to_string(count);
+  for (const DrawnCasters& view : drawn)
+    counts += (counts.empty() ? "" : ", ") + std::to_string(view.triangles);
   context.notes.push_back("light " + context.input.light.name +
                           ": the views of its map draw triangles: " + counts);
 }
@@ -212,6 +220,17 @@ void set_given_range(shader::MapView& view, const ParameterValues& parameters) {
 
 }  // namespace
 
+bool keeps_image(const ParameterValues& parameters) {
+  return chosen_layout(parameters).ranking == TileRanking::none;
+}
+
+void require_image(const TechniqueInput& input, const std::string& needed) {
+  if (!keeps_image(input.parameters))
+    throw unsupported(
+        "layout " + chosen_layout(input.parameters).id + " keeps its depths in a buffer, " + needed,
+        "layout");
+}
+
 std::uint32_t view_count(const TechniqueInput& input) {
   return chosen_layout(input.parameters).view_count(input.light, input.parameters);
 }
@@ -219,13 +238,20 @@ std::uint32_t view_count(const TechniqueInput& input) {
 void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   const Layout& layout = chosen_layout(input.parameters);
   require_served(layout, input.light);
+  if (layout.ranking != TileRanking::none) {
+    if (knows_two_surfaces(input.parameters))
+      throw unsupported("layout " + layout.id + " keeps one surface; bias_strategy " +
+                            choice_of(input.parameters, "bias_strategy") + " needs two",
+                        "bias_strategy");
+    Tiles::require(input, layout.ranking, needs);
+    return;
+  }
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t texels = std::uint64_t{size} * size * view_count(input);
   needs.memory.push_back({"shadow map",
                           texels * vulkan::texel_bytes(depth_format(input.parameters)), size,
                           "map_size"});
-  if (chosen_layout(input.parameters).reads_samples ||
-      choice_of(input.parameters, "range") == "visible")
+  if (layout.reads_samples || choice_of(input.parameters, "range") == "visible")
     SeenSamples::require(input, needs);
   if (!knows_two_surfaces(input.parameters)) return;
   for (const char* layer : {"first depths", "second depths"})
@@ -244,7 +270,7 @@ DepthMap::Views DepthMap::fit_views(PrepareContext& context, const MapUse& use) 
                           parameters, use, size, seen, context.notes});
   if (choice_of(parameters, "range") == "fixed")
     fix_ranges(views, context.scene, context.fit);
-  else if (choice_of(parameters, "range") == "visible")
+  else if (choice_of(parameters, "range") == "visible" && keeps_image(parameters))
     see_ranges(context, views, use, seen);
   return views;
 }
@@ -259,6 +285,12 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
     // Positions are floats: this much is lost on the way to a depth.
     const float rounding = std::ldexp(view.range.y, -21);
     view.range.w = static_cast<float>(real_of(parameters, "bias")) + slope_scale * rounding;
+  }
+  note_open_casters(context);
+  if (!keeps_image(parameters)) {
+    constants_ = tiles_.rank(context, views, use, seen_);
+    note_triangles(context, tiles_.draw(context, constants_));
+    return;
   }
   if (!image_) {
     vulkan::ImageDescription description;
@@ -275,7 +307,6 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
                 static_cast<float>(views.size()), slope_scale};
   constants_ = context.constants.push(data);
 
-  note_open_casters(context);
   if (knows_two_surfaces(parameters))
     draw_layers(context, views);
   else
@@ -295,7 +326,7 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
   program.state.depth_clamp = std::none_of(views.begin(), views.end(), cuts_casters);
   if (strategy == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
 
-  std::vector<std::uint64_t> triangles;
+  std::vector<DrawnCasters> drawn;
   context.pass("shadow map", [&](vulkan::Commands& commands) {
     for (std::uint32_t view = 0; view < views.size(); ++view) {
       vulkan::RenderTargets targets;
@@ -310,12 +341,12 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
       if (&target == &second_)
         bindings.texture_slice("first_depths", first_, view, 0, vulkan::Sampling::nearest);
       commands.begin_rendering(targets);
-      triangles.push_back(
+      drawn.push_back(
           context.draw_casters(commands, program, bindings, views[view].clip_from_world));
       commands.end_rendering();
     }
   });
-  note_triangles(context, triangles);
+  note_triangles(context, drawn);
 }
 
 void DepthMap::draw_layers(PrepareContext& context, const Views& views) {
@@ -357,7 +388,10 @@ void DepthMap::draw_layers(PrepareContext& context, const Views& views) {
 }
 
 void DepthMap::bind(vulkan::Bindings& bindings, vulkan::Sampling sampling) const {
-  bindings.texture("shadow_map", image_, sampling);
+  if (image_)
+    bindings.texture("shadow_map", image_, sampling);
+  else
+    tiles_.bind(bindings);
   bindings.buffer("MapBlock", constants_);
 }
 

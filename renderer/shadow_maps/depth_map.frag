@@ -2,7 +2,13 @@
 #include "renderer/shaders/caster.glsl"
 #include "renderer/shadow_maps/depth_coding.glsl"
 
+#ifdef TILE
+layout(std140) uniform TileBlock { uvec4 tile; };  // x its index
+layout(std430) buffer MapTexelBlock { uint map_texels[]; };
+MapView view = map.views[tile.x];
+#else
 layout(std140) uniform MapViewBlock { MapView view; };
+#endif
 
 #ifdef SECOND_LAYER
 uniform sampler2D first_depths;
@@ -45,6 +51,18 @@ void main() {
   }
   bias += map.texel.w * rounding_grant(view.range, distance);
   float depth = clamp(even_depth_of(view.range, distance + bias), 0.0, 1.0);
-  gl_FragDepth = kept_depth(view.range, depth);
+  float kept = kept_depth(view.range, depth);
+#ifdef TILE
+#ifdef variant_depth_bits_16
+  kept = round(65535.0 * kept) / 65535.0;
+#endif
+  // Lesser depths have greater bits of 1 - z, and the cleared buffer is far (Alecu 2014, listing 3.1).
+  uvec2 place = uvec2(gl_FragCoord.xy);
+  uint side = uint(view.texels.x);
+  if (all(lessThan(place, uvec2(side))))
+    atomicMax(map_texels[uint(view.texels.y) + place.y * side + place.x], floatBitsToUint(1.0 - kept));
+#else
+  gl_FragDepth = kept;
+#endif
 #endif
 }

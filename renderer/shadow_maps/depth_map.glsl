@@ -10,9 +10,10 @@
 #include "renderer/shaders/shadow_query.glsl"
 #include "renderer/shadow_maps/depth_coding.glsl"
 
-uniform sampler2DArray shadow_map;
-
 int view_count() { return int(map.texel.z); }
+
+/// Texels along a side of a view.
+float view_size(int view) { return map.views[view].texels.x; }
 
 /// The views that tell of a receiver, as the layout chooses them.
 struct ViewChoice {
@@ -21,17 +22,17 @@ struct ViewChoice {
   float share;  // of what the second tells, from 0 to 1
 };
 
-/// Place on a view in texels, 0 to the map's size; w as the view's clip matrix has it, above 0 before
+/// Place on a view in texels, 0 to the view's size; w as the view's clip matrix has it, above 0 before
 /// the light.
 vec3 place_on_view(int view, vec3 position) {
   vec4 clip = map.views[view].clip_from_world * vec4(position, 1.0);
-  return vec3((0.5 + 0.5 * clip.xy / clip.w) * map.texel.x, clip.w);
+  return vec3((0.5 + 0.5 * clip.xy / clip.w) * view_size(view), clip.w);
 }
 
 bool is_on_view(int view, vec3 position) {
   vec3 place = place_on_view(view, position);
   return place.z > 0.0 && all(greaterThanEqual(place.xy, vec2(0.0))) &&
-         all(lessThanEqual(place.xy, vec2(map.texel.x)));
+         all(lessThanEqual(place.xy, vec2(view_size(view))));
 }
 
 // Defines ViewChoice choose_views(vec3 position).
@@ -55,7 +56,7 @@ float calculate_shadow(ShadowQuery query) {
 /// A receiver on the map.
 struct MapPoint {
   int view;            // of the map
-  vec2 texel;          // place in texels, 0 .. map size
+  vec2 texel;          // place in texels, 0 .. the view's size
   float distance;      // m along the view's axis
   Spread spread;       // of the texels there
   float texel_width;   // m, of the widest there
@@ -115,7 +116,7 @@ MapPoint locate(ShadowQuery query, int view_index, float kernel_radius) {
   point.grant = map.texel.w * granted_texels(kernel_radius) * point.texel_width;
   point.nearest = 0.0;
   // Rays of the view are origin + s (forward + a right + b up), or origin + s forward + a right + b up.
-  vec2 gradient = 2.0 / map.texel.x *
+  vec2 gradient = 2.0 / view_size(view_index) *
                   vec2(dot(query.normal, view.right.xyz), dot(query.normal, view.up.xyz));
   float facing = dot(query.normal, view.forward.xyz);
   if (perspective) {
@@ -152,6 +153,24 @@ float distance_of_depth(MapPoint point, float depth) {
   return point.range.x + even_depth(point.range, depth) / point.range.z;
 }
 
+#ifdef TEXELS_IN_BUFFER
+#include "renderer/shadow_maps/tile_texels.glsl"
+#else
+uniform sampler2DArray shadow_map;
+
+/// Depth that the map holds; texels beyond the border repeat it.
+float fetch_depth(MapPoint point, ivec2 texel) {
+  texel = clamp(texel, ivec2(0), ivec2(int(map.texel.x) - 1));
+  return texelFetch(shadow_map, ivec3(texel, point.view), 0).r;
+}
+
+/// Middle of what a read of a texel finds.
+vec2 texel_center(MapPoint point, ivec2 texel) { return vec2(texel) + 0.5; }
+
+/// What a comparison with a texel grants, m.
+float texel_grant(MapPoint point, ivec2 texel) { return point.grant; }
+#endif
+
 /// The receiver's depth to compare with a texel of the map. Like casters, receivers behind far stand at
 /// it, where the map was given a far of its own.
 float receiver_depth(MapPoint point, ivec2 texel) {
@@ -160,16 +179,10 @@ float receiver_depth(MapPoint point, ivec2 texel) {
   if (parameter_bias_strategy == bias_strategy_receiver_plane ||
       parameter_bias_strategy == bias_strategy_auto ||
       parameter_bias_strategy == bias_strategy_back_faces) {
-    float met = plane_distance(point, vec2(texel) + 0.5 - point.texel);
+    float met = plane_distance(point, texel_center(point, texel) - point.texel);
     distance += map.texel.w * (met - point.distance);
   }
-  return min(depth_of_distance(point, distance - point.grant), 1.0);
-}
-
-/// Depth that the map holds; texels beyond the border repeat it.
-float fetch_depth(MapPoint point, ivec2 texel) {
-  texel = clamp(texel, ivec2(0), ivec2(int(map.texel.x) - 1));
-  return texelFetch(shadow_map, ivec3(texel, point.view), 0).r;
+  return min(depth_of_distance(point, distance - texel_grant(point, texel)), 1.0);
 }
 
 /// 1 where the texel leaves the receiver lit, otherwise 0.

@@ -3,6 +3,7 @@
 #include "renderer/frame/prepare_context.h"
 #include "renderer/shadow_maps/layout.h"
 #include "renderer/shadow_maps/seen_samples.h"
+#include "renderer/shadow_maps/tiles.h"
 
 namespace penumbra::shadow_maps {
 
@@ -17,13 +18,20 @@ std::vector<Parameter> comparing_map_parameters();
 /// one's own.
 std::vector<Diagnostic> map_diagnostics(const std::vector<Diagnostic>& own = {});
 
+/// Whether the layout keeps depths in an image, rather than in a buffer of tiles.
+bool keeps_image(const ParameterValues& parameters);
+
+/// Throws `unsupported` where the layout keeps no image of the map; `needed` says what for, as in
+/// "which a sampler cannot compare with".
+void require_image(const TechniqueInput& input, const std::string& needed);
+
 /// Views of the light's map, each a layer of its images.
 std::uint32_t view_count(const TechniqueInput& input);
 
 /// The depth map of a light: what map techniques are composed from. Depth is the distance along a
 /// view's axis, 0 at near and 1 at far, written per fragment, even in 32 bits unless parameters ask
-/// for less; one layer for each view of the layout. Bias strategies that know two surfaces draw
-/// both and make the map of them.
+/// for less; one layer for each view of the layout, or one buffer for all tiles. Bias strategies
+/// that know two surfaces draw both and make the map of them.
 class DepthMap {
  public:
   /// What it allocates. Throws `unsupported` for a light that the layout cannot serve.
@@ -32,10 +40,12 @@ class DepthMap {
   /// Draws the map for this frame.
   void draw(PrepareContext& context, const MapUse& use);
 
-  /// Names for renderer/shadow_maps/depth_map.glsl: "shadow_map" and "MapBlock".
+  /// Names for renderer/shadow_maps/depth_map.glsl: "shadow_map" or "MapTexelBlock", and
+  /// "MapBlock".
   void bind(vulkan::Bindings& bindings,
             vulkan::Sampling sampling = vulkan::Sampling::nearest) const;
 
+  /// Empty where a layout of tiles keeps depths in a buffer.
   const vulkan::Image& image() const { return image_; }
   const vulkan::BufferRange& constants() const { return constants_; }
 
@@ -51,6 +61,7 @@ class DepthMap {
   vulkan::Image second_;  ///< those behind them
   vulkan::BufferRange constants_;
   SeenSamples seen_;
+  Tiles tiles_;
 };
 
 /// A technique that draws a depth map for every light; what it is for is said by its GLSL.

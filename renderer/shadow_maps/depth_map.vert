@@ -1,6 +1,12 @@
 #include "renderer/shaders/caster.glsl"
 
+#ifdef TILE
+layout(std140) uniform MapBlock { MapData map; };
+layout(std140) uniform TileBlock { uvec4 tile; };  // x its index
+out float gl_ClipDistance[4];
+#else
 layout(std140) uniform MapViewBlock { MapView view; };
+#endif
 
 layout(location = 0) in vec3 position;
 #ifdef MASKED
@@ -18,5 +24,15 @@ void main() {
   surface_uv = uv;
   vertex_alpha = color.a;
 #endif
+#ifdef TILE
+  // In the corner of an area as large as the largest tile. Its sides alone clip: there is no near or far.
+  MapView view = map.views[tile.x];
+  vec2 clip = (view.clip_from_world * vec4(position, 1.0)).xy;
+  gl_Position = vec4((clip + 1.0) * view.texels.x / float(largest_tile) - 1.0, 0.0, 1.0);
+  // One that shows nothing is left out.
+  vec4 inside = vec4(1.0 + clip, 1.0 - clip);
+  for (int side = 0; side < 4; ++side) gl_ClipDistance[side] = view.choice.x > 0.0 ? inside[side] : -1.0;
+#else
   gl_Position = view.clip_from_world * vec4(position, 1.0);
+#endif
 }

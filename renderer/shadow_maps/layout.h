@@ -35,6 +35,14 @@ struct ViewFitting {
   std::vector<std::string>& notes;  ///< shown with the result
 };
 
+/// How a layout of tiles finds out which of them matter, if it has tiles.
+enum class TileRanking {
+  none,            ///< views of map_size, in the layers of an image
+  read_back,       ///< from what this frame sees, which the host waits for
+  previous_frame,  ///< from what the last frame saw; the host waits in the first one only
+  on_device        ///< from what this frame sees, without the host
+};
+
 /// Where depth lives: which views of the scene a light's map has, and which of them tell of a
 /// receiver. A layout is layouts/<id>.cpp, which describes this, and layouts/<id>.glsl, which
 /// defines `ViewChoice choose_views(vec3 position)`; the build finds them.
@@ -46,6 +54,7 @@ struct Layout {
   std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
   std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
   bool reads_samples = false;  ///< it asks for `seen_bounds`
+  TileRanking ranking = TileRanking::none;
 };
 
 inline constexpr const char* default_layout = "single";

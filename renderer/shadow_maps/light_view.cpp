@@ -62,7 +62,7 @@ DepthRange range_of(const shader::MapView& view, const GpuScene& scene, const Li
   return {std::min(casters.near, receivers.near), receivers.far};
 }
 
-void set_fitted_range(shader::MapView& view, DepthRange range) {
+void set_widened_range(shader::MapView& view, DepthRange range) {
   const bool perspective = view.origin.w > 0.5f;
   if (!(range.far > 0.0)) range.far = 1.0;  // nothing before the light
   // A light inside the scene's boxes starts close to itself; linear depth loses nothing by that.
@@ -74,6 +74,10 @@ void set_fitted_range(shader::MapView& view, DepthRange range) {
 
 }  // namespace
 
+void set_fitted_range(shader::MapView& view, double near, double far) {
+  set_widened_range(view, DepthRange{near, far});
+}
+
 shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double half_width,
                           bool perspective, double size) {
   const glm::dvec3 right = axes.right() * half_width;
@@ -84,6 +88,7 @@ shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double
   view.right = glm::vec4(right, 0.0);
   view.up = glm::vec4(down, 0.0);
   view.forward = glm::vec4(axes.forward, 2.0 * half_width / size);
+  view.texels = {static_cast<float>(size), 0.0f, 0.0f, 0.0f};
   for (int column = 0; column < 3; ++column) view.unwarp[column][column] = 1.0f;
   return view;
 }
@@ -214,7 +219,7 @@ void fix_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, cons
     };
     visit_clipped_corners(covered_box(scene, fit), {}, add);
   }
-  for (shader::MapView& view : views) set_fitted_range(view, all);
+  for (shader::MapView& view : views) set_widened_range(view, all);
 }
 
 void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds>& seen,
@@ -232,7 +237,7 @@ void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds
   }
   if (use.common_range) ranges.assign(ranges.size(), hull(ranges));
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (ranges[i].far > ranges[i].near) set_fitted_range(views[i], ranges[i]);
+    if (ranges[i].far > ranges[i].near) set_widened_range(views[i], ranges[i]);
 }
 
 void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, const LightFit& fit,
@@ -240,7 +245,7 @@ void fit_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, cons
   std::vector<DepthRange> ranges;
   for (const shader::MapView& view : views) ranges.push_back(range_of(view, scene, fit));
   if (common) ranges.assign(ranges.size(), hull(ranges));
-  for (std::size_t i = 0; i < views.size(); ++i) set_fitted_range(views[i], ranges[i]);
+  for (std::size_t i = 0; i < views.size(); ++i) set_widened_range(views[i], ranges[i]);
 }
 
 }  // namespace penumbra::shadow_maps

@@ -66,6 +66,10 @@ void fix_ranges(std::vector<shader::MapView>& views, const GpuScene& scene, cons
 void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds>& seen,
                    const MapUse& use, double slope_scale, double bias, double size);
 
+/// Gives a view a range that was fitted from near to far, m along its axis, a little wider and
+/// nowhere behind where the view begins.
+void set_fitted_range(shader::MapView& view, double near, double far);
+
 /// The range of a view from near to far, m along its axis.
 void set_range(shader::MapView& view, float near, float far);
 

@@ -15,6 +15,7 @@ std::uint32_t base_of(std::uint32_t map_size) {
 }  // namespace
 
 void NearestDepths::require(const TechniqueInput& input, Requirements& needs) {
+  if (!keeps_image(input.parameters)) return;
   const std::uint32_t base =
       base_of(static_cast<std::uint32_t>(integer_of(input.parameters, "map_size")));
   needs.memory.push_back({"nearest depths",
@@ -24,6 +25,7 @@ void NearestDepths::require(const TechniqueInput& input, Requirements& needs) {
 }
 
 void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {
+  if (!depth.image()) return;
   const vulkan::ImageDescription& map = depth.image().description();
   const std::uint32_t base = base_of(map.width);
   if (!image_) {
@@ -54,7 +56,7 @@ void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {
 }
 
 void NearestDepths::bind(vulkan::Bindings& bindings) const {
-  bindings.texture("nearest_depths", image_, vulkan::Sampling::nearest);
+  if (image_) bindings.texture("nearest_depths", image_, vulkan::Sampling::nearest);
 }
 
 }  // namespace penumbra::shadow_maps

@@ -4,6 +4,10 @@
 #include "renderer/shadow_maps/depth_map.glsl"
 #include "renderer/shadow_maps/nearest_depths_layout.glsl"
 
+#ifdef TEXELS_IN_BUFFER
+/// Tiles have no such chain: something may stand anywhere.
+float nearest_depth(MapPoint point, float radius) { return 0.0; }
+#else
 uniform sampler2DArray nearest_depths;
 
 /// No texel within `radius` texels of the receiver's place along either side is nearer to the light.
@@ -23,4 +27,5 @@ float nearest_depth(MapPoint point, float radius) {
     }
   return nearest;
 }
+#endif
 #endif

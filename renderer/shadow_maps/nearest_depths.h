@@ -5,7 +5,7 @@
 namespace penumbra::shadow_maps {
 
 /// Least depth over squares of 2, 4, 8 .. texels of a depth map, so that a shader can bound what
-/// stands before a region in a few reads (Guennebaud, Barthe and Paulin 2006).
+/// stands before a region in a few reads (Guennebaud, Barthe and Paulin 2006). Tiles have none.
 class NearestDepths {
  public:
   /// What it allocates beside the depth map.

@@ -1,5 +1,6 @@
 // Bounds of what is seen in each view, along the view's axes.
 #include "renderer/shaders/frame.glsl"
+#include "renderer/shadow_maps/float_places.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -7,12 +8,6 @@ layout(std140) uniform MapBlock { MapData map; };
 uniform sampler2D seen_positions;
 layout(std430) buffer SeenBoundsBlock { uint found[]; };  // three least, three greatest for each view
 layout(push_constant) uniform ChoiceBlock { uint by_depth; } choice;
-
-/// Place of a float in the order of all floats: integers have atomic minima and maxima everywhere.
-uint place_of(float value) {
-  uint bits = floatBitsToUint(value);
-  return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
-}
 
 bool is_in_view(MapView view, vec3 position) {
   if (choice.by_depth != 0u) {

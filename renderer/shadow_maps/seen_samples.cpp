@@ -80,6 +80,11 @@ void SeenSamples::draw(PrepareContext& context) {
   drawn_ = true;
 }
 
+const vulkan::Image& SeenSamples::positions(PrepareContext& context) {
+  if (!drawn_) draw(context);
+  return positions_;
+}
+
 std::vector<Bounds> SeenSamples::bounds(PrepareContext& context,
                                         const std::vector<shader::MapView>& views, bool by_depth) {
   if (!drawn_) draw(context);

@@ -1,5 +1,5 @@
-// Places that the camera sees; w is how far the surface may reach from there to the next sample, m, and 0
-// where it faces away from the light.
+// Places that the camera sees; w is how far the surface may reach from there to the next sample, m,
+// negative where it faces away from the light.
 #include "renderer/shaders/caster.glsl"
 #include "renderer/shaders/shadow_query.glsl"
 
@@ -28,5 +28,5 @@ void main() {
   // Normals of shading lean by a few degrees from those of facets.
   float away = -0.2 * length(normal) * length(to_light);
   float reach = max(length(right) + length(down), 1e-30);
-  seen_position = vec4(world_position, dot(normal, to_light) >= away ? reach : 0.0);
+  seen_position = vec4(world_position, dot(normal, to_light) >= away ? reach : -reach);
 }

@@ -6,8 +6,8 @@
 namespace penumbra::shadow_maps {
 
 /// What the camera sees, as points: a grid over the whole picture, whatever window of it is drawn,
-/// so that all windows agree. Drawn once a frame, when first asked for. Surfaces turned away from
-/// the light are left out: no map is asked about them.
+/// so that all windows agree. Drawn once a frame, when first asked for. Bounds leave out surfaces
+/// turned away from the light: no map is asked about them.
 class SeenSamples {
  public:
   /// Most samples along a side of the grid; smaller pictures have one for each of theirs.
@@ -26,6 +26,10 @@ class SeenSamples {
   /// on the device and a read-back, for which the host waits.
   std::vector<Bounds> bounds(PrepareContext& context, const std::vector<shader::MapView>& views,
                              bool by_depth);
+
+  /// Position, and how far the surface may reach to the next sample, m: negative where it is turned
+  /// away from the light, 0 where there is none.
+  const vulkan::Image& positions(PrepareContext& context);
 
  private:
   void draw(PrepareContext& context);

@@ -36,6 +36,7 @@ VkDeviceSize entry_bytes(const std::string& type) {
 }  // namespace
 
 void SummedAreaTable::require(const TechniqueInput& input, Requirements& needs) {
+  require_image(input, "which no table of sums is made of");
   const auto size = static_cast<std::uint64_t>(integer_of(input.parameters, "map_size"));
   needs.memory.push_back(
       {"summed-area table",

@@ -248,12 +248,14 @@ void Device::choose_features(const Offered& offered) {
   need(has.pipelineStatisticsQuery, "pipelineStatisticsQuery");
   need(has.independentBlend, "independentBlend");
   need(has.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+  need(has.shaderClipDistance, "shaderClipDistance");
 
   features.geometryShader = VK_TRUE;
   features.depthClamp = VK_TRUE;
   features.pipelineStatisticsQuery = VK_TRUE;
   features.independentBlend = VK_TRUE;
   features.fragmentStoresAndAtomics = VK_TRUE;
+  features.shaderClipDistance = VK_TRUE;
   features.imageCubeArray = has.imageCubeArray;
   features.samplerAnisotropy = has.samplerAnisotropy;
   features.shaderFloat64 = has.shaderFloat64;

@@ -2,6 +2,7 @@
 #include "renderer/shadow_maps/filters.glsl"
 #include "renderer/shadow_maps/footprint.glsl"
 
+#ifdef variant_filter_hardware_bilinear
 uniform sampler2DArrayShadow shadow_map_compare;
 
 // The sampler compares and interpolates: one read does what mean_of_bilinear does with four. A tap has
@@ -20,6 +21,7 @@ float mean_of_hardware_bilinear(MapPoint point, int size) {
   }
   return lit / float(size * size);
 }
+#endif
 
 // Kernel as wide as the pixel's footprint where that is wider: 2 to the power of the mip level that a
 // filtered map would be read at (Adorjan 2013, 3.1).
@@ -42,6 +44,9 @@ float filter_view(ShadowQuery query, int view) {
   }
   if (parameter_filter == filter_box) return mean_of_box(point, kernel);
   if (parameter_filter == filter_bilinear) return mean_of_bilinear(point, kernel);
-  if (parameter_filter == filter_hardware_bilinear) return mean_of_hardware_bilinear(point, kernel);
+#ifdef variant_filter_hardware_bilinear
+  return mean_of_hardware_bilinear(point, kernel);
+#else
   return mean_of_disc(point, 0.5 * float(kernel), parameter_taps, tap_rotation(query.pixel));
+#endif
 }

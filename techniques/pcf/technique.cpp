@@ -36,9 +36,15 @@ std::vector<Parameter> pcf_parameters() {
 /// Percentage-closer filtering: compares first, filters after.
 class PercentageCloserFilter : public shadow_maps::MapTechnique {
  public:
+  void require(const TechniqueInput& input, Requirements& needs) override {
+    MapTechnique::require(input, needs);
+    by_sampler_ = choice_of(input.parameters, "filter") == "hardware-bilinear";
+    if (by_sampler_) shadow_maps::require_image(input, "which no sampler can compare with");
+  }
   void bind(vulkan::Bindings& bindings) const override {
     MapTechnique::bind(bindings);
-    bindings.texture("shadow_map_compare", map_.image(), vulkan::Sampling::compare_less_or_equal);
+    if (by_sampler_)
+      bindings.texture("shadow_map_compare", map_.image(), vulkan::Sampling::compare_less_or_equal);
   }
 
  protected:
@@ -50,6 +56,9 @@ class PercentageCloserFilter : public shadow_maps::MapTechnique {
     const bool whole = choice_of(parameters, "filter") == "box";
     return {.kernel_radius = 0.5 * (whole ? kernel - 1.0 : kernel)};
   }
+
+ private:
+  bool by_sampler_ = false;
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ ExtentOnMap extent_on_map(MapPoint point) {
   vec3 along_right = normalize(view.right.xyz);
   vec3 along_up = normalize(view.up.xyz);
   turn_to_extent(along_right, along_up);
-  vec2 texels = 0.5 * map.texel.x /
+  vec2 texels = 0.5 * view.texels.x /
                 vec2(dot(view.right.xyz, view.right.xyz), dot(view.up.xyz, view.up.xyz));
   ExtentOnMap extent;
   extent.right = half_size.x * texels *
@@ -161,5 +161,5 @@ vec4 draw_diagnostic_penumbra_width(ShadowQuery query, vec2 picture) {
   ExtentOnMap extent = extent_on_map(point);
   float blocker = find_blocker(point, extent, tap_rotation(query.pixel));
   float width = blocker < 0.0 ? 0.0 : 2.0 * texels_of(extent, reach(point, blocker));
-  return vec4(vec3(8.0 * width / map.texel.x), 1.0);
+  return vec4(vec3(8.0 * width / view_size(view)), 1.0);
 }

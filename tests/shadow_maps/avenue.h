@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "renderer/shadow_maps/layout.h"
 #include "scenes.h"
+#include "techniques/layout_matrix.h"
 
 /// What a person sees who looks along a plain, under a sun: scenes that layouts are judged by.
 namespace penumbra::tests {
@@ -49,6 +51,15 @@ inline std::vector<std::string> layout_ids() {
 /// Layouts that serve a sun.
 inline std::vector<std::string> sun_layouts() {
   return shadow_maps::layouts_for(LightKind::directional);
+}
+
+/// Whether a technique draws a sun with a layout.
+inline bool draws_sun(const std::string& technique, const std::string& layout) {
+  for (const techniques::LayoutRow& row : techniques::layout_matrix())
+    if (row.technique == technique)
+      return std::count(row.lights.at(layout).begin(), row.lights.at(layout).end(), "directional") >
+             0;
+  return true;  // a preset of one that serves all
 }
 
 }  // namespace penumbra::tests

@@ -69,6 +69,7 @@ TEST(Seams, errors_at_borders_of_views_are_those_beside_them) {
   std::size_t layouts_with_borders = 0;
   for (const std::string& layout : sun_layouts())
     for (const char* technique : {"shadow-map", "pcf-bilinear-3x3", "vsm", "evsm"}) {
+      if (!draws_sun(technique, layout)) continue;
       SCOPED_TRACE(technique + (" on " + layout));
       const ParameterValues parameters{{"layout", layout}, {"map_size", std::int64_t{512}}};
       const auto rows = rows_to_border(views_of(scene, technique, parameters));
