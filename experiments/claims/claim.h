@@ -61,6 +61,8 @@ std::vector<Claim> volume_claims();
 std::vector<Claim> filter_claims();
 std::vector<Claim> map_claims();
 std::vector<Claim> layout_claims();
+std::vector<Claim> tile_claims();
+std::vector<Claim> tile_cost_claims();
 std::vector<Claim> cost_claims();
 std::vector<Claim> waiting_claims();
 

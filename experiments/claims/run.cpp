@@ -77,9 +77,9 @@ json document_of(const std::vector<Judged>& list) {
 const std::vector<Claim>& all() {
   static const std::vector<Claim> list = [] {
     std::vector<Claim> claims;
-    for (const auto& family :
-         {published_claims(), number_claims(), survey_scene_claims(), volume_claims(),
-          filter_claims(), map_claims(), layout_claims(), cost_claims(), waiting_claims()})
+    for (const auto& family : {published_claims(), number_claims(), survey_scene_claims(),
+                               volume_claims(), filter_claims(), map_claims(), layout_claims(),
+                               tile_claims(), tile_cost_claims(), cost_claims(), waiting_claims()})
       claims.insert(claims.end(), family.begin(), family.end());
     return claims;
   }();

@@ -157,13 +157,17 @@ void note_open_casters(PrepareContext& context) {
 }
 
 /// What the views of a map draw; what touches several is drawn as often.
-void note_triangles(PrepareContext& context, const std::vector<DrawnCasters>& drawn) {
+void note_drawn(PrepareContext& context, const std::vector<DrawnCasters>& drawn) {
   if (drawn.size() < 2) return;
-  std::string counts;
-  for (const DrawnCasters& view : drawn)
-    counts += (counts.empty() ? "" : ", ") + std::to_string(view.triangles);
+  std::string triangles, casters;
+  for (const DrawnCasters& view : drawn) {
+    const char* comma = triangles.empty() ? "" : ", ";
+    triangles += comma + std::to_string(view.triangles);
+    casters += comma + std::to_string(view.ranges);
+  }
   context.notes.push_back("light " + context.input.light.name +
-                          ": the views of its map draw triangles: " + counts);
+                          ": the views of its map draw triangles: " + triangles +
+                          "; casters, each material of an instance by itself: " + casters);
 }
 
 /// Fits ranges to what is seen, for filters that bear casters clamped onto near.
@@ -289,7 +293,7 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
   note_open_casters(context);
   if (!keeps_image(parameters)) {
     constants_ = tiles_.rank(context, views, use, seen_);
-    note_triangles(context, tiles_.draw(context, constants_));
+    note_drawn(context, tiles_.draw(context, constants_));
     return;
   }
   if (!image_) {
@@ -346,7 +350,7 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
       commands.end_rendering();
     }
   });
-  note_triangles(context, drawn);
+  note_drawn(context, drawn);
 }
 
 void DepthMap::draw_layers(PrepareContext& context, const Views& views) {

@@ -75,6 +75,19 @@ TEST(Claims, count_bytes_and_levels_and_go_on_where_they_were) {
   EXPECT_EQ(again.at("claims"), first.at("claims"));
 }
 
+TEST(Claims, count_bytes_and_vertices_of_tiles_exactly) {
+  const TemporaryFolder folder;
+  const json summary = measure(folder, {"Q22", "C16", "C17"});
+  EXPECT_EQ(claim_of(summary, "Q22").at("numbers").at("bytes of IASM"), 6860800);
+  EXPECT_EQ(claim_of(summary, "Q22").at("numbers").at("bytes of CSM"), 12582912);
+  const json& vertices = claim_of(summary, "C16").at("numbers");
+  EXPECT_DOUBLE_EQ(vertices.at("ratio (16/3)"), 16.0 / 3.0);
+  const json& casters = claim_of(summary, "C17").at("numbers");
+  EXPECT_GE(casters.at("casters drawn, spheres"), casters.at("boxes"));
+  EXPECT_GE(casters.at("boxes"), casters.at("that reach into tiles"));
+  EXPECT_GT(casters.at("that reach into tiles"), 0);
+}
+
 TEST(Claims, are_judged_by_the_parts_of_their_rules) {
   EXPECT_EQ(verdict_of({true, true}), Verdict::reproduced);
   EXPECT_EQ(verdict_of({true, false}), Verdict::in_part);

@@ -158,6 +158,35 @@ TEST(Tiles, give_the_same_picture_however_they_are_ranked) {
   }
 }
 
+/// The avenue's picture after one from another camera.
+RenderResult after(const Camera& earlier, const std::string& layout) {
+  RenderRequest asked =
+      request(std::make_shared<const Scene>(avenue()), "shadow-map", {{"layout", layout}}, picture);
+  asked.earlier_cameras = {earlier};
+  return renderer().render(asked);
+}
+
+TEST(Tiles, ranked_a_frame_late_follow_the_camera_before) {
+  const Scene scene = avenue();
+  const RenderResult alone = draw(scene, "shadow-map", {{"layout", "iasm-delayed"}}, picture);
+  // One that looks back, where other tiles matter.
+  Camera other = scene.cameras[0];
+  other.target = other.position + glm::dvec3(18.0, -1.0, 6.0);
+  const RenderResult jumped = after(other, "iasm-delayed");
+  EXPECT_NE(sizes_of(jumped), sizes_of(alone));
+  EXPECT_EQ(sizes_of(after(scene.cameras[0], "iasm-delayed")), sizes_of(alone));
+  // What the render before kept is gone.
+  const RenderResult again = draw(scene, "shadow-map", {{"layout", "iasm-delayed"}}, picture);
+  EXPECT_TRUE(same(alone.visibility, again.visibility));
+  for (const char* layout : {"iasm", "iasm-gpu"}) {
+    const RenderResult own = draw(scene, "shadow-map", {{"layout", layout}}, picture);
+    EXPECT_TRUE(same(after(other, layout).visibility, own.visibility)) << layout;
+  }
+  // Coarse for a frame, but no worse than a map of few texels.
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  EXPECT_LT(visibility_error(jumped.visibility, truth, jumped.judged).rms, 0.3);
+}
+
 TEST(Tiles, give_the_same_picture_again) {
   const Scene scene = avenue();
   for (const std::string& layout : tile_layouts()) {
@@ -216,7 +245,7 @@ TEST(Tiles, that_show_nothing_are_not_drawn_unless_a_filter_reads_over_borders) 
   const auto drawn = [&](const char* technique) {
     const auto triangles =
         noted(draw(scene, technique, {{"layout", "iasm"}, {"tile_radius", 15.0}}, picture),
-              "the views of its map draw triangles: ");
+              "the views of its map draw triangles: ", ";");
     return std::count_if(triangles.begin(), triangles.end(), [](double n) { return n > 0.0; });
   };
   EXPECT_LT(drawn("shadow-map"), 13);
