@@ -60,7 +60,7 @@ inline constexpr const char* acceleration_structure_name = "acceleration structu
 /// What a technique needs for one light; the plan allocates this and nothing else.
 struct Requirements {
   std::vector<MemoryNeed>
-      memory;  ///< what may be too large for a device; nothing of the frame's size
+      memory;  ///< what may be too large for a device; not images of the frame's size
   CasterUse casters = CasterUse::cone;
   bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
   bool adjacency = false;               ///< index buffer of triangles with adjacency

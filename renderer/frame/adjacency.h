@@ -29,7 +29,7 @@ struct AdjacencyGroup {
 /// indices a triangle, corners at 0, 2 and 4 in the order of the plain index buffer, opposite
 /// corners of the neighbours at 1, 3 and 5. Corners of equal world position within an instance
 /// share one index, whatever their normals. An edge without neighbour names its own first corner
-/// there. A triangle with two equal corners encloses nothing: it stands in no neighbourhood.
+/// there. A triangle with two equal corners encloses nothing: it has no neighbours.
 struct Adjacency {
   std::vector<std::uint32_t> indices;
   std::vector<AdjacencyGroup> groups;  ///< closed ones first; casters first in both kinds

@@ -4,7 +4,7 @@
 
 #include "renderer/frame/gpu_scene.h"
 
-/// What casters are that techniques may not bear; for notes.
+/// Properties of casters that some techniques cannot handle; for notes.
 namespace penumbra {
 
 /// Whether alpha cuts holes into some caster.

@@ -35,13 +35,13 @@ class FrameRun {
   const std::vector<std::unique_ptr<LightPass>>& lights() const { return lights_; }
   FaultCounts fault_counts() const;
   std::vector<std::string> notes() const;  ///< sorted, each once
-  /// What the technique had of the device over what any picture has.
+  /// Device memory of the technique, beside what every picture takes.
   std::vector<ResourceCost> technique_memory() const;
 
  private:
   FrameTargets::Wanted wanted_targets(bool in_rounds) const;
   bool draws_uncertainty() const;  ///< as a diagnostic picture
-  /// Whether the error of all lights is known, so that it can be told.
+  /// Whether the errors of all lights are known.
   bool knows_uncertainty() const;
   void check_uncertainty() const;
   /// The first that reaches anything visible, or the number of lights.

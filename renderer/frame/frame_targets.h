@@ -22,7 +22,7 @@ struct FrameTargets {
 
   vulkan::MemoryLedger ledger;
   GeometryBuffer geometry;
-  vulkan::Image picture;             ///< encoded, by pixel, and so is what has no other word here
+  vulkan::Image picture;             ///< encoded; by pixel, as are those below unless noted
   vulkan::Image linear;              ///< with exposure, or none
   vulkan::Image light_sums;          ///< radiance and visibility of the light at hand, by sample
   vulkan::Image visibility_samples;  ///< of the light at hand

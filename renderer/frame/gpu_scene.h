@@ -31,7 +31,7 @@ struct DrawRange {
   bool masked = false;  ///< has holes
 };
 
-/// Where coordinates on the device begin, and how far around there matters.
+/// The origin of coordinates on the device, and how far from it surfaces matter.
 struct SceneFrame {
   glm::dvec3 origin{0.0};
   /// Maps, volumes and tolerances are fitted to what lies no farther from the origin along any
@@ -72,7 +72,7 @@ class GpuScene {
   /// The part of a box in the scene's coordinates that lies within reach, in world space; may be
   /// empty.
   Bounds near_part(const Bounds& box) const;
-  /// What floats cannot bear in this scene, for people.
+  /// What this scene loses by single precision, shown with the result.
   const std::vector<std::string>& notes() const { return notes_; }
   /// Of an instance that is used: its first vertex among positions().
   std::uint32_t first_vertex(std::uint32_t instance) const { return first_vertex_[instance]; }

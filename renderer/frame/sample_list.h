@@ -18,7 +18,7 @@ struct SampleWork {
   std::uint32_t overflow_place = 0;
 };
 
-/// Samples of the frame at which there is something to be done.
+/// Samples of the frame that a pass has to work at.
 struct SampleList {
   vulkan::Buffer texels;  ///< a word each: x, and y in the upper half
   struct Range {

@@ -22,7 +22,7 @@ class SteadyTimes {
   /// The device was busy long enough and the medians of the last two batches agree.
   bool steady() const;
 
-  /// Waiting any longer costs more than it is worth.
+  /// It has waited as long as is worth it.
   bool given_up() const { return wall_ms_ >= most_wall_ms && frames_.size() >= 2; }
 
  private:

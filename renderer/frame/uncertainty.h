@@ -28,7 +28,7 @@ class Uncertainty {
 
   /// Forgets what was added.
   void restart();
-  /// Says that what is added next was drawn with so many points of a pixel.
+  /// How many points of a pixel were drawn in what is added next.
   void begin_round(std::uint32_t points);
   /// Reads the sums of a light that was drawn; `light_sum` holds its radiance by sample.
   void add_light(vulkan::Device& device, const vulkan::Image& light_sum);

@@ -32,7 +32,7 @@ class SoftVolumes {
   vulkan::Image coverage_;
   vulkan::Buffer table_;
   vulkan::Image counts_[2];
-  const vulkan::Image* unused_ = nullptr;  ///< bound for what is not there
+  const vulkan::Image* unused_ = nullptr;  ///< bound in place of images that are not made
 };
 
 }  // namespace penumbra::shadow_volumes

@@ -75,7 +75,7 @@ struct PassRecord {
 };
 
 /// Records passes in order and measures each. Timestamps are taken at ALL_COMMANDS with a global
-/// barrier after them, outside renderings: the only placement that blames the right pass on
+/// barrier after them, outside renderings: the only placement that charges the right pass on
 /// lavapipe.
 class Recorder {
  public:
