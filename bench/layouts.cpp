@@ -2,8 +2,8 @@
 // crawls when the camera moves: bench_layouts [--size N] [--scenes LIST] [--device NAME]
 //
 // Lights have no extents here. A pixel's distance is that at which its ray meets the ground: what
-// stands on it is nearer. Every layout has the bytes of one map of 512x512 texels, but for tiles, which
-// have 6.5 times as many.
+// stands on it is nearer. Every layout has the bytes of one map of 512x512 texels, but for tiles,
+// which have 6.5 times as many.
 #include <cmath>
 #include <cstdio>
 

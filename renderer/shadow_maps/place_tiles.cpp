@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/error.h"
 #include "renderer/scene/convex_clip.h"
 #include "renderer/shadow_maps/light_view.h"
 #include "renderer/shadow_maps/seen.h"
@@ -28,8 +29,12 @@ TileSquare place_square(const ViewFitting& fitting, const ViewAxes& axes, const 
     return glm::dvec2(glm::dot(v, axes.right()), glm::dot(v, axes.up));
   };
   const double given = real_of(fitting.parameters, "tile_radius");
+  const double length_of_scene = glm::length(covered.size());
+  if (given > 0.0 && given < 1e-6 * length_of_scene)
+    throw bad_value("tile_radius", "tile_radius is less than a millionth of the scene's length, " +
+                                       to_text(length_of_scene) + " m");
   TileSquare square{on_plane(fitting.camera.position),
-                    given > 0.0 ? given : std::max(0.5 * glm::length(covered.size()), 1e-6)};
+                    given > 0.0 ? given : std::max(0.5 * length_of_scene, 1e-6)};
   const glm::dvec2 ahead = on_plane(fitting.camera.direction);
   // Nearer than this the camera looks along the light: then it stands in the middle.
   if (const double length = glm::length(ahead); length > 1e-3)

@@ -50,7 +50,8 @@ shader::TileRules rules_for(const PrepareContext& context, const MapUse& use, st
   rules.options = {ranges_follow_samples(parameters, use) ? 1u : 0u,
                    skips_empty(use, ranking_of(context)) ? 1u : 0u,
                    choice_of(parameters, "tile_sizes") == "proportional"
-                       ? static_cast<std::uint32_t>(texels_of_tiles())
+                       // Each tile has one at least.
+                       ? static_cast<std::uint32_t>(texels_of_tiles()) - tiles
                        : 0u,
                    0u};
   return rules;

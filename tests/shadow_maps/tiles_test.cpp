@@ -225,6 +225,66 @@ TEST(Tiles, serve_every_bias_that_needs_one_surface_as_well_as_one_view_does) {
   EXPECT_EQ(refused, 4u);  // second-depth, midpoint, dual-depth, auto
 }
 
+TEST(Tiles, keep_their_texels_in_proportion_within_the_buffer) {
+  const RenderResult result =
+      draw(avenue(), "shadow-map", {{"layout", "iasm"}, {"tile_sizes", "proportional"}}, picture);
+  const auto sizes = sizes_of(result);
+  const auto importance = importance_of(result);
+  ASSERT_EQ(sizes.size(), 16u);
+  double texels = 0.0;
+  const double all = std::accumulate(importance.begin(), importance.end(), 0.0);
+  for (std::size_t i = 0; i < 16; ++i) {
+    texels += sizes[i] * sizes[i];
+    const double side = std::sqrt(importance[i] / all * 1715200.0);
+    EXPECT_NEAR(sizes[i], std::clamp(side, 1.0, 1024.0), 2.0) << i;
+  }
+  EXPECT_LE(texels, 1715200.0);
+  EXPECT_EQ(draw(avenue(), "shadow-map", {{"layout", "iasm-gpu"}, {"tile_sizes", "proportional"}},
+                 picture)
+                .non_finite_pixels,
+            0u);
+}
+
+TEST(Tiles, begin_their_range_where_asked) {
+  const Scene scene = avenue();
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  for (const char* range : {"visible", "casters", "common"})
+    for (const char* bits : {"16", "32"}) {
+      const RenderResult result =
+          draw(scene, "pcf-bilinear",
+               {{"layout", "iasm"}, {"tile_range", range}, {"depth_bits", bits}}, picture);
+      EXPECT_LT(visibility_error(result.visibility, truth, result.judged).rms, 0.1)
+          << range << ", " << bits;
+    }
+}
+
+TEST(Tiles, refuse_a_square_that_no_float_can_cut) {
+  try {
+    draw(avenue(), "shadow-map", {{"layout", "iasm"}, {"tile_radius", 1e-9}}, 16);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code, "bad_value");
+    EXPECT_EQ(error.field, "tile_radius");
+  }
+}
+
+TEST(Tiles, beyond_a_square_of_ones_own_is_light) {
+  // Six metres around a camera that looks along the avenue: its far shadows are gone.
+  const Scene scene = avenue();
+  const RenderResult whole = draw(scene, "shadow-map", {{"layout", "iasm"}}, picture);
+  const RenderResult small =
+      draw(scene, "shadow-map", {{"layout", "iasm"}, {"tile_radius", 3.0}}, picture);
+  std::size_t far_shadows = 0, lost = 0;
+  for (std::uint32_t y = 0; y < picture / 2 + 12; ++y)
+    for (std::uint32_t x = 0; x < picture; ++x)
+      if (whole.judged.at(x, y, 0) > 0.5f && whole.visibility.at(x, y, 0) == 0.0f) {
+        ++far_shadows;
+        lost += small.visibility.at(x, y, 0) == 1.0f;
+      }
+  EXPECT_GT(far_shadows, 20u);
+  EXPECT_EQ(lost, far_shadows);
+}
+
 TEST(Tiles, refuse_filters_that_need_an_image) {
   try {
     draw(avenue(), "pcf", {{"layout", "iasm"}, {"filter", "hardware-bilinear"}}, 16);
