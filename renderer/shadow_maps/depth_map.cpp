@@ -39,6 +39,10 @@ std::vector<Parameter> layout_parameters() {
   return list;
 }
 
+Parameter range_parameter(const char* name, const char* meaning) {
+  return real(name, 0.0, {0.0, 1e6}, meaning).in("m");
+}
+
 }  // namespace
 
 std::vector<Parameter> map_parameters() {
@@ -78,14 +82,6 @@ std::vector<Parameter> map_parameters() {
                       "rounding; 1 is enough, 0 leaves only bias."));
   return list;
 }
-
-namespace {
-
-Parameter range_parameter(const char* name, const char* meaning) {
-  return real(name, 0.0, {0.0, 1e6}, meaning).in("m");
-}
-
-}  // namespace
 
 std::vector<Parameter> comparing_map_parameters() {
   std::vector<Parameter> list = map_parameters();
