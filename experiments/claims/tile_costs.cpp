@@ -17,19 +17,11 @@
 namespace penumbra::experiments::claims {
 namespace {
 
-/// Milliseconds of the passes of a name.
-double pass_ms(const nlohmann::json& row, const std::string& name) {
-  double ms = 0.0;
-  for (const auto& pass : row.at("passes"))
-    if (pass.at("name") == name) ms += pass.at("median_ms").get<double>();
-  return ms;
-}
-
 Outcome c09(Laboratory& lab) {
   Outcome outcome;
   const auto ratio = [&](const char* scene) {
-    const double tiles = pass_ms(lab.row(scene, "iasm"), "shadow map");
-    const double cascades = pass_ms(lab.row(scene, "cascaded"), "shadow map");
+    const double tiles = sum_over_passes(lab.row(scene, "iasm"), "shadow map", "median_ms");
+    const double cascades = sum_over_passes(lab.row(scene, "cascaded"), "shadow map", "median_ms");
     outcome.number(std::string("maps' passes, IASM over CSM, ") + scene, tiles / cascades);
     return tiles / cascades;
   };

@@ -4,6 +4,7 @@
 
 #include "experiments/claims/claim.h"
 #include "experiments/claims/laboratory.h"
+#include "experiments/report/rows.h"
 #include "renderer/error.h"
 
 namespace penumbra::experiments::claims {
@@ -106,18 +107,12 @@ Outcome c04(Laboratory& lab) {
   return outcome;
 }
 
-double fragments_of(const nlohmann::json& row, const std::string& pass) {
-  double sum = 0.0;
-  for (const auto& each : row.at("passes"))
-    if (each.at("name") == pass) sum += each.at("fragments").get<double>();
-  return sum;
-}
-
 Outcome c05(Laboratory& lab) {
   const std::string scene = "sweep:10x1600x1";
-  const double silhouettes = fragments_of(lab.row(scene, "shadow-volumes"), "volumes");
+  const double silhouettes =
+      sum_over_passes(lab.row(scene, "shadow-volumes"), "volumes", "fragments");
   const double all_triangles =
-      fragments_of(lab.row(scene, "shadow-volumes-brute-force"), "volumes");
+      sum_over_passes(lab.row(scene, "shadow-volumes-brute-force"), "volumes", "fragments");
   if (silhouettes == 0.0 && all_triangles == 0.0)
     throw unsupported("this device counts no fragments in passes that write the stencil alone");
   Outcome outcome;

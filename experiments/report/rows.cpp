@@ -61,6 +61,13 @@ std::string text_of(const json& row, const char* key) {
 
 }  // namespace
 
+double sum_over_passes(const json& row, const std::string& pass, const char* key) {
+  double sum = 0.0;
+  for (const json& each : row.at("passes"))
+    if (each.at("name") == pass) sum += each.at(key).get<double>();
+  return sum;
+}
+
 bool is_done(const json& row) {
   return row.at("status") == "done";
 }

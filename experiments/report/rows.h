@@ -17,6 +17,9 @@ std::string results_csv(const std::vector<nlohmann::json>& rows);
 /// Number of a row, or not a number where it has none.
 double number_of(const nlohmann::json& row, const char* key);
 
+/// Sum of a number over the row's passes of a name.
+double sum_over_passes(const nlohmann::json& row, const std::string& pass, const char* key);
+
 bool is_done(const nlohmann::json& row);
 
 /// The table of all rows.

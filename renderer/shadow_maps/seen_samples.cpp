@@ -6,6 +6,11 @@
 #include "renderer/frame/geometry_buffer.h"
 
 namespace penumbra::shadow_maps {
+
+float float_at_place(std::uint32_t place) {
+  return std::bit_cast<float>((place & 0x80000000u) != 0 ? place & 0x7fffffffu : ~place);
+}
+
 namespace {
 
 constexpr VkFormat sample_depth_format = VK_FORMAT_D32_SFLOAT;
@@ -16,12 +21,6 @@ constexpr std::size_t bounds_of_view = 6;
 glm::uvec2 grid_of(const TechniqueInput& input) {
   return {std::min(input.width, SeenSamples::most_side),
           std::min(input.height, SeenSamples::most_side)};
-}
-
-/// The float whose place in order seen_bounds.comp wrote.
-double float_at_place(std::uint32_t place) {
-  const std::uint32_t bits = (place & 0x80000000u) != 0 ? place & 0x7fffffffu : ~place;
-  return static_cast<double>(std::bit_cast<float>(bits));
 }
 
 vulkan::Image make_grid(PrepareContext& context, const char* name, VkFormat format,

@@ -7,7 +7,10 @@ layout(location = 0) in vec3 world_position;
 #ifdef MASKED
 layout(location = 1) in vec2 surface_uv;
 layout(location = 2) in float vertex_alpha;
-layout(push_constant) uniform DrawBlock { uint material; } draw;
+layout(push_constant) uniform DrawBlock {
+  uint material;
+}
+draw;
 #endif
 
 layout(location = 0) out vec4 seen_position;
@@ -22,7 +25,8 @@ void main() {
   if (alpha < material.surface.z) discard;
 #endif
   bool has_eye = frame.camera_position.w > 0.5;
-  vec3 to_camera = has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
+  vec3 to_camera =
+      has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
   if (dot(normal, to_camera) < 0.0) normal = -normal;
   vec3 to_light = vector_to_light(world_position);
   // Normals of shading lean by a few degrees from those of facets.

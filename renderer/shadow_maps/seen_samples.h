@@ -5,6 +5,9 @@
 
 namespace penumbra::shadow_maps {
 
+/// The float whose place in the order of all floats a shader wrote (float_places.glsl).
+float float_at_place(std::uint32_t place);
+
 /// What the camera sees, as points: a grid over the whole picture, whatever window of it is drawn,
 /// so that all windows agree. Drawn once a frame, when first asked for. Bounds leave out surfaces
 /// turned away from the light: no map is asked about them.

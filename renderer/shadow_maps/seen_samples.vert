@@ -1,6 +1,9 @@
 #include "renderer/shaders/caster.glsl"
 
-layout(std140) uniform SeenBlock { mat4 clip_from_world; } seen;
+layout(std140) uniform SeenBlock {
+  mat4 clip_from_world;
+}
+seen;
 
 layout(location = 0) in vec3 position;
 #ifdef MASKED

@@ -1,7 +1,6 @@
 #include "renderer/shadow_maps/tiles.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -67,11 +66,6 @@ shader::MapData map_data(const PrepareContext& context, const std::vector<shader
   return data;
 }
 
-/// The float whose place in order shaders wrote (place_of).
-float float_at(std::uint32_t place) {
-  return std::bit_cast<float>((place & 0x80000000u) != 0 ? place & 0x7fffffffu : ~place);
-}
-
 bool is_seen(const shader::TileSums& sums) {
   return sums.seen.z != 0u;
 }
@@ -107,8 +101,8 @@ void apply(const std::array<shader::TileSums, tiles>& sums, const shader::TileRu
                    static_cast<float>(importance[i]) / most, static_cast<float>(ranks[i]), 0.0f};
     if (seen && rules.options.x != 0u) {
       const float granted = rules.granted.x + rules.granted.y * view.forward.w;
-      set_fitted_range(view, double{float_at(~sums[i].seen.y)} - double{granted},
-                       double{float_at(sums[i].seen.z)});
+      set_fitted_range(view, double{float_at_place(~sums[i].seen.y)} - double{granted},
+                       double{float_at_place(sums[i].seen.z)});
     }
     view.range.w = rules.granted.z + rules.granted.w * view.range.y;
   }
