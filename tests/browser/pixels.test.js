@@ -73,7 +73,10 @@ function differences(shown, expected, corner, limits, zoom) {
 
 /// Compares what is on the screen with the picture's own pixels. Returns how many were compared.
 async function compare(person, png, zoom, what) {
-  const { corner, limits } = await person.page.evaluate(() => {
+  const { corner, limits } = await person.page.evaluate(async () => {
+    // The picture is there, and what a changed window calls for has been done and drawn.
+    await document.querySelector(".viewer-stage img").decode();
+    for (let frame = 0; frame < 2; ++frame) await new Promise(requestAnimationFrame);
     const image = document.querySelector(".viewer-stage img").getBoundingClientRect();
     const stage = document.querySelector(".viewer-stage");
     return { corner: [image.left, image.top].map((at) => Math.round(at * devicePixelRatio)),

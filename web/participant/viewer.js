@@ -73,13 +73,17 @@ export class Viewer {
     document.body.append(this.dialog);
     this.dialog.showModal();
     this.resized = new AbortController();
+    // A window's zoom changes the ratio of pixels, a caption that wraps the stage alone.
     addEventListener("resize", () => this.measure(), { signal: this.resized.signal });
+    this.stages = new ResizeObserver(() => this.measure());
+    for (const { stage } of this.panes) this.stages.observe(stage);
     this.choose(slot);
     this.panes[0].stage.focus();
   }
 
   closed() {
     this.resized.abort();
+    this.stages.disconnect();
     this.dialog.remove();
   }
 
