@@ -119,6 +119,38 @@ TEST(Ranges, of_what_is_seen_serve_all_six_views_of_a_point_light) {
   }
 }
 
+TEST(Ranges, of_boxes_are_each_face_s_own) {
+  // Walls 2 m beside a point light, casters half way and nearer, and the ground 40 m below: the face
+  // that looks at a wall has its depths from 1 m to the wall's back, unless the filter averages them.
+  Scene scene = empty_scene(50.0, 60.0);
+  add_plate(scene, {-20, -20}, {20, 20}, -40.0);
+  for (const double side : {-1.0, 1.0})
+    for (const bool turned : {false, true}) {
+      const auto box = [&](double from, double to, double up) {
+        const double near = std::min(side * from, side * to), far = std::max(side * from, side * to);
+        if (turned)
+          add_box(scene, {-0.2, up - 0.2, near}, {0.2, up + 0.2, far});
+        else
+          add_box(scene, {near, up - 0.2, -0.2}, {far, up + 0.2, 0.2});
+      };
+      box(2.0, 2.1, -1.0);
+      box(1.5, 1.6, 0.0);
+      box(1.0, 1.1, 0.6);
+    }
+  Light light = lamp({0, 0, 0}, 45);
+  light.kind = LightKind::point;
+  scene.lights.push_back(light);
+  const auto middle = [&](const char* technique, const char* range) {
+    RenderRequest asked = request(std::make_shared<const Scene>(scene), technique,
+                                  {{"range", range}, {"map_size", std::int64_t{256}}}, picture);
+    asked.diagnostic = "map";
+    return static_cast<double>(renderer().render(asked).diagnostic.at(picture / 2, picture / 2, 0));
+  };
+  EXPECT_NEAR(middle("shadow-map", "boxes"), 255.0 * (1.5 - 1.0) / (2.1 - 1.0), 1.0);
+  EXPECT_NEAR(middle("vsm", "boxes"), 255.0 * (1.5 - 1.0) / (40.0 - 1.0), 1.0);
+  EXPECT_NEAR(middle("shadow-map", "fixed"), 255.0 * 1.5 / 40.0, 1.0);
+}
+
 TEST(Cascades, fitted_to_samples_leave_out_what_hides_behind_a_wall) {
   // A wall ends the view at 8 m; the ground's box reaches 120 m.
   Scene scene = empty_scene(2.0, 1.0);

@@ -26,7 +26,7 @@ std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
   } else {
     views = views_around(light, widen, fitting.size);
   }
-  fit_ranges(views, fitting.scene, fitting.fit, true);
+  fit_ranges(views, fitting.scene, fitting.fit, fitting.use.common_range);
   return views;
 }
 
