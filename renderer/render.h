@@ -12,6 +12,7 @@
 #include "renderer/device.h"
 #include "renderer/image.h"
 #include "renderer/parameters.h"
+#include "renderer/path_frame.h"
 #include "renderer/scene/scene.h"
 
 namespace penumbra {
@@ -137,6 +138,9 @@ struct RenderControl {
   /// bytes from which the same request, on the same device, goes on after that part.
   std::function<void(const std::function<std::string()>& state)> between_parts;
   std::string resume;  ///< such bytes. Others are ignored, and the picture begins anew.
+  /// Gets each frame of the camera's path, the picture's own last; where the request asks for
+  /// visibility. Those before it are drawn with the first round of light points.
+  std::function<void(PathFrame)> path_frame;
 };
 
 /// Draws frames on one device. A picture with very many samples is drawn window by window, one with

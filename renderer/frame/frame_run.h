@@ -31,6 +31,7 @@ class FrameRun {
   void encode(const ImageF& linear);
 
   const FrameTargets& targets() const { return targets_; }
+  const CameraMatrices& picture_camera() const { return setup_.picture_matrices; }
   Uncertainty* uncertainty() const { return targets_.uncertainty.get(); }
   const std::vector<std::unique_ptr<LightPass>>& lights() const { return lights_; }
   FaultCounts fault_counts() const;

@@ -44,6 +44,7 @@ void PictureRun::Progress::visit(Archive& archive) {
   archive(visibility);
   archive(judged);
   archive(uncertainty);
+  archive(points);
   sum.visit(archive);
 }
 
@@ -84,6 +85,7 @@ RenderResult PictureRun::run() {
     if (frame_index_ == 0)
       create_ms = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
   }
+  if (follows_path()) hand_over(std::move(now_.points), now_.visibility, now_.judged);
   RenderResult result;
   result.cost = costs_.summary();
   result.cost.settled = settled;
@@ -114,10 +116,18 @@ void PictureRun::draw_earlier_cameras() {
   constexpr std::uint32_t not_counted = 1;
   for (const Camera& camera : request_.earlier_cameras) {
     frame_.look_through(camera);
+    ImageF points, visibility, judged;
     for (const Window& window : windows_) {
       state_.recorder.clear_records();
       frame_.draw(window, rounds_.front(), not_counted, false, {});
+      if (!follows_path()) continue;
+      ImageF seen, facing;
+      read_visibility(seen, facing);
+      paste(visibility, seen, window, request_);
+      paste(judged, facing, window, request_);
+      read_points(window, points);
     }
+    if (follows_path()) hand_over(std::move(points), std::move(visibility), std::move(judged));
     ++cameras_done_;
     report(0.0);
   }
@@ -197,6 +207,7 @@ void PictureRun::finish_window(const Window& window) {
   paste(now_.linear, linear, window, request_);
   paste(now_.visibility, visibility, window, request_);
   paste(now_.judged, judged, window, request_);
+  read_points(window, now_.points);
   if (frame_.uncertainty() != nullptr)
     paste(now_.uncertainty, standard_error(linear), window, request_);
   if (targets.diagnostic)
@@ -224,6 +235,24 @@ void PictureRun::read_visibility(ImageF& visibility, ImageF& judged) const {
       judged.pixels[p * lights + i] = pair.pixels[2 * p + 1];
     }
   }
+}
+
+void PictureRun::read_points(const Window& window, ImageF& points) const {
+  if (!follows_path()) return;
+  const ImageF samples = read_float(state_.device, frame_.targets().geometry.position, 4);
+  const std::uint32_t side = samples_per_side(request_.supersampling);
+  ImageF part(window.width, window.height, 4);
+  for (std::uint32_t y = 0; y < part.height; ++y)
+    for (std::uint32_t x = 0; x < part.width; ++x)
+      std::copy_n(&samples.at(side * x + side / 2, side * y + side / 2, 0), 4, &part.at(x, y, 0));
+  paste(points, part, window, request_);
+}
+
+void PictureRun::hand_over(ImageF points, ImageF visibility, ImageF judged) const {
+  const double side = samples_per_side(request_.supersampling);
+  const double sample = (std::floor(0.5 * side) + 0.5) / side;
+  control_.path_frame({std::move(points), sample, std::move(visibility), std::move(judged),
+                       frame_.picture_camera().clip_from_world});
 }
 
 void PictureRun::report(double share_of_round) const {
@@ -260,7 +289,7 @@ std::uint64_t PictureRun::signature() const {
   for (const PointRange& round : rounds_) mix(round.count);
   mix(frame_.lights().size());
   mix(frame_.uncertainty() != nullptr);
-  mix((request_.linear ? 1u : 0u) + (request_.visibility ? 2u : 0u));
+  mix((request_.linear ? 1u : 0u) + (request_.visibility ? 2u : 0u) + (follows_path() ? 4u : 0u));
   return hash;
 }
 

@@ -27,7 +27,7 @@ class PictureRun {
     std::uint32_t light_samples = 0;  ///< most that a window has drawn
     std::uint64_t non_finite_pixels = 0;
     Image8 picture, diagnostic;
-    ImageF linear, visibility, judged, uncertainty;
+    ImageF linear, visibility, judged, uncertainty, points;
     RoundSum sum;  ///< of the window at hand
 
     template <class Archive>
@@ -46,6 +46,10 @@ class PictureRun {
   void finish_window(const Window& window);
   ImageF standard_error(const ImageF& linear) const;
   void read_visibility(ImageF& visibility, ImageF& judged) const;
+  /// Copies what the window shows of surfaces into `points`, where frames of the path are followed.
+  void read_points(const Window& window, ImageF& points) const;
+  bool follows_path() const { return control_.path_frame && request_.visibility; }
+  void hand_over(ImageF points, ImageF visibility, ImageF judged) const;
   void report(double share_of_round) const;
   void between_parts();
   std::uint64_t signature() const;

@@ -19,7 +19,8 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
   GeometryBuffer buffer;
   buffer.width = width;
   buffer.height = height;
-  buffer.position = image("geometry positions", GeometryBuffer::position_format, color);
+  buffer.position = image("geometry positions", GeometryBuffer::position_format,
+                          color | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   buffer.words = image("geometry surfaces", GeometryBuffer::words_format, color);
   buffer.depth = image(stencil ? "geometry depth and stencil" : "geometry depth",
                        stencil ? VK_FORMAT_D32_SFLOAT_S8_UINT : VK_FORMAT_D32_SFLOAT,

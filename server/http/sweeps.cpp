@@ -70,6 +70,7 @@ const std::vector<std::pair<std::string, json::json_pointer>>& columns() {
       {"visibility_bias", "/quality/visibility_bias"_json_pointer},
       {"false_shadow", "/quality/false_shadow"_json_pointer},
       {"missing_shadow", "/quality/missing_shadow"_json_pointer},
+      {"frame_difference", "/quality/frame_difference"_json_pointer},
       {"error", "/error/message"_json_pointer},
   };
   return list;

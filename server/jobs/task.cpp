@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/error.h"
+#include "renderer/metrics/frame_change.h"
 #include "renderer/metrics/metrics.h"
 #include "renderer/technique.h"
 #include "requests/fields.h"
@@ -123,7 +124,7 @@ Cost time_frames(Renderer& renderer, const Task& task, const RenderResult& first
   RenderRequest request = to_render_request(task.request);
   request.frames = frames_to_time(renderer, task, first.cost, notes);
   request.settle = true;
-  return renderer.render(request, {progress, {}, {}}).cost;
+  return renderer.render(request, {progress, {}, {}, {}}).cost;
 }
 
 /// Times the same view without shadows, in the same breath: a device's clocks and a machine's other
@@ -138,7 +139,7 @@ Cost time_baseline(Renderer& renderer, const Task& task, const Cost& cost,
                task.request.frames > 0 ? task.request.frames
                                        : affordable_frames(frame_ms_of(cost), baseline_budget_ms));
   request.settle = true;
-  return renderer.render(request, {progress, {}, {}}).cost;
+  return renderer.render(request, {progress, {}, {}, {}}).cost;
 }
 
 json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first, Parts& parts,
@@ -163,6 +164,30 @@ json ssim_or_null(const Image8& picture, const Image8& reference, std::vector<st
     notes.push_back(std::string("no ssim: ") + error.what());
     return nullptr;
   }
+}
+
+bool judges_path(const Task& task, const RenderRequest& request) {
+  return task.wants.contains(want::quality) && !request.earlier_cameras.empty();
+}
+
+/// Change from frame to frame beyond the reference's own, or null where no frame shows a point of
+/// the one before. The kept reference knows the end of the path only: all of it is drawn.
+json path_difference(Renderer& renderer, const Task& task, const metrics::FrameChange& drawn,
+                     const std::vector<Camera>& earlier_cameras,
+                     const std::function<void(double)>& progress) {
+  if (drawn.points() == 0) return nullptr;
+  RequestContext context;
+  context.device = task.request.request.at("device");
+  RenderRequest request = to_render_request(reference_of(task.request, context));
+  request.earlier_cameras = earlier_cameras;
+  request.visibility = true;
+  metrics::FrameChange reference;
+  RenderControl control;
+  control.progress = progress;
+  control.path_frame = [&](PathFrame frame) { reference.add(std::move(frame)); };
+  const DeviceLock drawing(DeviceLock::Mode::draw, draw_patience_s);
+  renderer.render(request, control);
+  return metrics::frame_difference(drawn, reference);
 }
 
 json measure_quality(const Task& task, const RenderResult& drawn, const Image8& reference,
@@ -205,10 +230,14 @@ json device_to_json(const DeviceInfo& device) {
 TaskResult run_task(Renderer& renderer, const Task& task,
                     const std::function<void(double)>& progress) {
   const auto wanted = [&task](const char* name) { return task.wants.contains(name); };
-  Parts parts(progress, wanted(want::cost) ? 3 : 1);
-
   // Draw once with everything that the wanted files are made of.
   RenderRequest request = to_render_request(task.request);
+  const bool along_path = judges_path(task, request);
+  Parts parts(progress, (wanted(want::cost) ? 3 : 1) + (along_path ? 1 : 0));
+  metrics::FrameChange change;
+  RenderControl control;
+  control.progress = parts.next();
+  if (along_path) control.path_frame = [&](PathFrame frame) { change.add(std::move(frame)); };
   request.visibility = wanted(want::visibility) || wanted(want::quality);
   request.linear = wanted(want::linear);
   request.uncertainty = wanted(want::noise);
@@ -217,15 +246,15 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   if (wanted(want::cost)) {
     // Nothing else may draw while frames are timed, and the first may be the only one.
     const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
-    drawn = renderer.render(request, {parts.next(), {}, {}});
+    drawn = renderer.render(request, control);
     result.cost = measure_cost(renderer, task, drawn, parts, result.notes);
     if (!alone.held()) result.notes.push_back("measured while another render shared the device");
   } else {
     const DeviceLock drawing(DeviceLock::Mode::draw, draw_patience_s);
     Checkpoint checkpoint(task.checkpoints, task.request.id);
-    drawn = renderer.render(
-        request,
-        {parts.next(), [&](const auto& state) { checkpoint.offer(state); }, checkpoint.load()});
+    control.between_parts = [&](const auto& state) { checkpoint.offer(state); };
+    control.resume = checkpoint.load();
+    drawn = renderer.render(request, control);
     checkpoint.remove();
   }
   const std::vector<std::string>& of_scene = task.request.scene->notes;
@@ -246,6 +275,9 @@ TaskResult run_task(Renderer& renderer, const Task& task,
     if (wanted(want::quality))
       result.quality = measure_quality(task, drawn, reference, result.notes);
   }
+  if (along_path)
+    result.quality["frame_difference"] =
+        path_difference(renderer, task, change, request.earlier_cameras, parts.next());
   if (drawn.noise_rms_y) result.noise_rms_y = *drawn.noise_rms_y;
   return result;
 }

@@ -218,6 +218,25 @@ TEST_F(ProgramTest, draws_the_end_of_a_path_of_cameras_as_the_camera_there_draws
   EXPECT_THAT(wrong.err, HasSubstr("camera_path[1].field_of_view"));
 }
 
+TEST_F(ProgramTest, measures_how_much_changes_from_frame_to_frame_of_a_path) {
+  const auto difference = [&](const std::string& technique) {
+    const Outcome outcome = run("measure village " + technique +
+                                " --width 160 --height 160 --light-samples 64 --frames 1 "
+                                "--json --camera-path path.json");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const json quality = json::parse(outcome.out).at("quality");
+    return quality.value("frame_difference", json("not told"));
+  };
+  // The eye turns where it stands, so that what one frame shows the next shows elsewhere.
+  std::ofstream(path("path.json")) << R"([{}, {"target": [0.4, 1, 0]}, {"target": [0.8, 1, 0]}])";
+  const json still = difference("shadow-map");
+  const json led = difference("shadow-map --set layout=cascaded --set cascade_snapping=false");
+  ASSERT_TRUE(still.is_number() && led.is_number()) << still << led;
+  EXPECT_LT(2.0 * still.get<double>(), led.get<double>());
+  std::ofstream(path("path.json")) << R"([{"target": [0.4, 1, 0]}])";
+  EXPECT_EQ(difference("shadow-map"), "not told");
+}
+
 TEST_F(ProgramTest, draws_the_same_bytes_every_time) {
   ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out a.png").status, 0);
   ASSERT_EQ(run("render half-plane shadow-map --width 64 --height 64 --out b.png").status, 0);

@@ -94,6 +94,50 @@ TEST_F(CameraPath, changes_no_picture_of_a_technique_without_memory) {
   }
 }
 
+/// Greatest distance between where a frame's points are seen and where its samples are, pixels.
+double greatest_shift(const PathFrame& frame) {
+  double greatest = 0.0;
+  for (std::uint32_t y = 0; y < frame.points.height; ++y)
+    for (std::uint32_t x = 0; x < frame.points.width; ++x) {
+      const float* point = &frame.points.at(x, y, 0);
+      if (point[3] < 0.5f) continue;
+      const glm::dvec4 clip = frame.clip_from_world * glm::dvec4(point[0], point[1], point[2], 1.0);
+      const glm::dvec2 at = (0.5 + 0.5 * glm::dvec2(clip) / clip.w) *
+                            glm::dvec2(frame.points.width, frame.points.height);
+      const glm::dvec2 shift = glm::abs(at - glm::dvec2(x, y) - frame.sample);
+      greatest = std::max({greatest, shift.x, shift.y});
+    }
+  return greatest;
+}
+
+TEST_F(CameraPath, hands_over_each_frame_with_the_points_that_it_shows) {
+  const techniques::Resolved resolved = techniques::resolve("pcf", {});
+  request.technique = resolved.technique;
+  request.parameters = resolved.parameters;
+  request.visibility = true;
+  request.earlier_cameras = {standing_at(-1.0), standing_at(1.0)};
+  RendererOptions small{.device = "", .validation = true};
+  small.most_window_samples = 512;
+  Renderer in_windows(small);
+  for (const std::uint32_t samples : RenderLimits::supersampling) {
+    request.supersampling = samples;
+    for (Renderer* drawing : {&renderer, &in_windows}) {
+      std::vector<PathFrame> frames;
+      RenderControl control;
+      control.path_frame = [&](PathFrame frame) { frames.push_back(std::move(frame)); };
+      const RenderResult result = drawing->render(request, control);
+      ASSERT_EQ(frames.size(), 3u);
+      EXPECT_EQ(frames.back().visibility.pixels, result.visibility.pixels);
+      EXPECT_EQ(frames.back().judged.pixels, result.judged.pixels);
+      for (const PathFrame& frame : frames) EXPECT_LT(greatest_shift(frame), 0.01) << samples;
+      EXPECT_NE(frames[0].visibility.pixels, frames[1].visibility.pixels);
+      request.earlier_cameras.pop_back();
+      EXPECT_EQ(drawing->render({request}).visibility.pixels, result.visibility.pixels);
+      request.earlier_cameras.push_back(standing_at(1.0));
+    }
+  }
+}
+
 TEST_F(CameraPath, has_a_bound_and_cameras_that_can_draw) {
   const techniques::Resolved resolved = techniques::resolve("none", {});
   request.technique = resolved.technique;

@@ -75,6 +75,7 @@ export function number_rows({ quality, cost }) {
     ["FLIP", fixed(quality?.flip, 4)],
     ["False shadow", significant(quality?.false_shadow)],
     ["Missing shadow", significant(quality?.missing_shadow)],
+    ["Change between frames beyond the reference's", significant(quality?.frame_difference)],
     ["Frame time, median", cost?.frame_ms ? `${significant(cost.frame_ms.median)} ms` : "–"],
     ["Frame time, 95th percentile", cost?.frame_ms ? `${significant(cost.frame_ms.p95)} ms` : "–"],
     ["Spread of repeats (half the quartiles' distance)",
