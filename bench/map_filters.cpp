@@ -151,9 +151,10 @@ class Filters {
 
   void record(vulkan::Recorder& recorder) {
     recorder.pass("full screen", [&](vulkan::Commands& commands) {
-      draw(commands, "techniques/vsm/moments.frag", "shadow_map", depth_, rows_);
+      draw(commands, shadow_maps::encoding("techniques/vsm/encoder.glsl"), "shadow_map", depth_,
+           rows_);
       commands.barrier();
-      draw(commands, "renderer/shadow_maps/blurred_map.frag", "blurred_rows", rows_, results_[0]);
+      draw(commands, "", "blurred_rows", rows_, results_[0]);
     });
     recorder.pass("compute",
                   [&](vulkan::Commands& commands) { compute(commands, "", results_[1]); });
@@ -203,12 +204,12 @@ class Filters {
     commands.dispatch(groups, groups);
   }
 
-  void draw(vulkan::Commands& commands, const char* fragment, const char* name,
+  void draw(vulkan::Commands& commands, const std::string& encoding, const char* name,
             const vulkan::Image& source, const vulkan::Image& target) {
     vulkan::ProgramSource program;
     program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                      {VK_SHADER_STAGE_FRAGMENT_BIT, fragment}};
-    program.preamble = declarations_;
+                      {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/blurred_map.frag"}};
+    program.preamble = declarations_ + encoding;
     vulkan::GraphicsState state;
     state.color_formats = {format_};
     vulkan::RenderTargets targets;

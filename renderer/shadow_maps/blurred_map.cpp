@@ -45,6 +45,10 @@ Diagnostic mip_level_diagnostic() {
   return {"mip-level", "Level that each pixel reads: 0 red, 1 yellow, 2 green, 3 and above blue."};
 }
 
+std::string encoding(const std::string& encoder) {
+  return "#define ENCODE\n#include \"" + encoder + "\"\n";
+}
+
 namespace {
 
 bool has_mips(const BlurSettings& settings, const ParameterValues& parameters) {
@@ -55,7 +59,7 @@ bool has_mips(const BlurSettings& settings, const ParameterValues& parameters) {
 
 void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settings,
                          Requirements& needs) {
-  require_image(input, "which no filter can blur beforehand");
+  if (!keeps_image(input.parameters)) return;
   const auto size = static_cast<std::uint32_t>(integer_of(input.parameters, "map_size"));
   const std::uint64_t bytes =
       std::uint64_t{size} * size * view_count(input) * vulkan::texel_bytes(settings.format);
@@ -67,6 +71,13 @@ void BlurredMap::require(const TechniqueInput& input, const BlurSettings& settin
 
 void BlurredMap::draw(PrepareContext& context, const DepthMap& depth,
                       const BlurSettings& settings) {
+  if (!keeps_image(context.input.parameters)) {
+    context.notes.push_back("light " + context.input.light.name + ": layout " +
+                            chosen_layout(context.input.parameters).id +
+                            " keeps depths in a buffer: they are filtered as they are read, "
+                            "(2 blur + 2)^2 of them a pixel, and without mips");
+    return;
+  }
   const bool mips = has_mips(settings, context.input.parameters);
   sampling_ = settings.filter != MapFilter::mean ? vulkan::Sampling::nearest
               : mips                             ? vulkan::Sampling::linear_mipmapped
@@ -90,12 +101,13 @@ void BlurredMap::create(PrepareContext& context, const DepthMap& depth,
 
 void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
                       std::uint32_t view) {
-  const auto run = [&](const std::string& name, const std::string& fragment,
+  const auto run = [&](const std::string& name, const std::string& encoder,
                        const vulkan::Image& target, const vulkan::Bindings& bindings) {
     vulkan::ProgramSource source;
     source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                     {VK_SHADER_STAGE_FRAGMENT_BIT, fragment}};
+                     {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/blurred_map.frag"}};
     source.preamble = context.declarations;
+    if (!encoder.empty()) source.preamble += encoding(encoder);
     if (settings.filter == MapFilter::logarithmic) source.preamble += "#define FILTER_LOGARITHMS\n";
     if (settings.filter == MapFilter::maximum) source.preamble += "#define FILTER_MAXIMUM\n";
     vulkan::GraphicsState state;
@@ -121,7 +133,7 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
   run("encode and blur", settings.encoder, rows_, rows);
   vulkan::Bindings columns;
   columns.texture("blurred_rows", rows_, vulkan::Sampling::nearest);
-  run("blur", "renderer/shadow_maps/blurred_map.frag", image_, columns);
+  run("blur", "", image_, columns);
 }
 
 /// Every level is the mean of the one before, 2x2 texels at a time.
@@ -144,7 +156,7 @@ void BlurredMap::reduce(vulkan::Commands& commands) {
 }
 
 void BlurredMap::bind(vulkan::Bindings& bindings, const std::string& name) const {
-  bindings.texture(name, image_, sampling_);
+  if (image_) bindings.texture(name, image_, sampling_);
 }
 
 }  // namespace penumbra::shadow_maps

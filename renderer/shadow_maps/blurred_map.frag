@@ -1,9 +1,11 @@
-// One direction of a separable filter over a map: columns of what was filtered along rows. A stage that
-// defines ENCODE and vec4 encode_depth(float) before it reads and encodes rows of the depth map.
+// One direction of a separable filter over a map: columns of what was filtered along rows. With ENCODE,
+// and a technique's vec4 encode_depth(float) before it, it reads and encodes rows of the depth map.
 //
 // Without a further definition the filter takes means. FILTER_LOGARITHMS: the first component holds
 // logarithms, and the result is the logarithm of the mean of what they encode. FILTER_MAXIMUM: the
 // result is the greatest value.
+#include "renderer/shadow_maps/blur_weights.glsl"
+
 #ifdef ENCODE
 uniform sampler2DArray shadow_map;
 const ivec2 direction = ivec2(1, 0);
@@ -15,12 +17,6 @@ const ivec2 direction = ivec2(0, 1);
 layout(push_constant) uniform BlurBlock { uint view; } blur;
 
 layout(location = 0) out vec4 out_value;
-
-float weight(int offset) {
-  if (parameter_blur_filter == blur_filter_box || parameter_blur == 0) return 1.0;
-  float deviations = 2.0 * float(offset) / float(parameter_blur);
-  return exp(-0.5 * deviations * deviations);
-}
 
 // Texels beyond the border repeat it.
 vec4 value_at(int offset) {
@@ -43,9 +39,9 @@ vec4 filtered() {
   for (int i = -parameter_blur; i <= parameter_blur; ++i) {
     float value = value_at(i).r;
     float top = max(greatest, value);
-    sum = sum * exp(greatest - top) + weight(i) * exp(value - top);
+    sum = sum * exp(greatest - top) + blur_weight(i) * exp(value - top);
     greatest = top;
-    total += weight(i);
+    total += blur_weight(i);
   }
   return vec4(greatest + log(sum / total), 0.0, 0.0, 0.0);
 }
@@ -63,8 +59,8 @@ vec4 filtered() {
   precise vec4 sum = vec4(0.0);
   float total = 0.0;
   for (int i = -parameter_blur; i <= parameter_blur; ++i) {
-    sum += (share * weight(i)) * value_at(i);
-    total += share * weight(i);
+    sum += (share * blur_weight(i)) * value_at(i);
+    total += share * blur_weight(i);
   }
   return sum / total;
 }

@@ -1,9 +1,12 @@
-// Reading a map that was filtered beforehand.
+// Reading a map that was filtered beforehand, or filtering texels of a buffer as they are read.
 #ifndef PENUMBRA_BLURRED_MAP_GLSL
 #define PENUMBRA_BLURRED_MAP_GLSL
+#include "renderer/shadow_maps/blur_weights.glsl"
+#include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/footprint.glsl"
 
-uniform sampler2DArray blurred_map;
+/// What the map keeps of a depth; the technique's encoder.
+vec4 encode_depth(float depth);
 
 /// Variance of the blur's weights along one side, texels: of a bell that is cut off, at most this.
 const float blur_radius = float(parameter_blur);
@@ -29,6 +32,9 @@ float level_after_blur(float width) {
 /// lavapipe's takes one pixel's footprint for all four of a quad, which is garbage where they see
 /// different surfaces.
 MapProbes map_probes(ShadowQuery query, MapPoint point) {
+#ifdef TEXELS_IN_BUFFER
+  return MapProbes(1, vec2(0.0), 0.0);
+#else
   vec4 footprint = map_footprint(query, point);
   bool right_is_longer = length(footprint.xy) >= length(footprint.zw);
   MapProbes probes;
@@ -39,6 +45,70 @@ MapProbes map_probes(ShadowQuery query, MapPoint point) {
   probes.count = int(count);
   probes.level = parameter_mips == 1 ? level_after_blur(longer / count) : 0.0;
   return probes;
+#endif
+}
+
+#ifdef TEXELS_IN_BUFFER
+/// Where the four texels lie that are interpolated, and the share of the later ones.
+struct BlurTexels {
+  ivec2 first;
+  vec2 share;
+};
+BlurTexels texels_around(MapPoint point) {
+  vec2 corner = point.texel - 0.5;
+  return BlurTexels(ivec2(floor(corner)), fract(corner));
+}
+
+/// Weight of the texel `offset` from the first along one side, -blur to blur + 1; all together are 1.
+float weight_in_blur(int offset, float share) {
+  float own = offset <= parameter_blur ? blur_weight(offset) : 0.0;
+  float next = offset > -parameter_blur ? blur_weight(offset - 1) : 0.0;
+  float total = 0.0;
+  for (int i = -parameter_blur; i <= parameter_blur; ++i) total += blur_weight(i);
+  return mix(own, next, share) / total;
+}
+
+vec4 read_blurred(ShadowQuery query, MapPoint point) {
+  BlurTexels texels = texels_around(point);
+  precise vec4 sum = vec4(0.0);
+  for (int y = -parameter_blur; y <= parameter_blur + 1; ++y)
+    for (int x = -parameter_blur; x <= parameter_blur + 1; ++x) {
+      float weight = weight_in_blur(x, texels.share.x) * weight_in_blur(y, texels.share.y);
+      sum += weight * encode_depth(fetch_depth(point, texels.first + ivec2(x, y)));
+    }
+  return sum;
+}
+
+/// Logarithm of the mean of what logarithms encode.
+float read_logarithms(MapPoint point) {
+  BlurTexels texels = texels_around(point);
+  float greatest = encode_depth(fetch_depth(point, texels.first)).r;
+  float sum = 0.0;
+  for (int y = -parameter_blur; y <= parameter_blur + 1; ++y)
+    for (int x = -parameter_blur; x <= parameter_blur + 1; ++x) {
+      float weight = weight_in_blur(x, texels.share.x) * weight_in_blur(y, texels.share.y);
+      float value = encode_depth(fetch_depth(point, texels.first + ivec2(x, y))).r;
+      // The greatest term is kept apart: exponentials of the others then lie between 0 and 1.
+      float top = max(greatest, value);
+      sum = sum * exp(greatest - top) + weight * exp(value - top);
+      greatest = top;
+    }
+  return greatest + log(sum);
+}
+
+/// All tiles side by side, as they stand in the buffer.
+vec4 texel_in_picture(vec2 picture) {
+  MapPoint point;
+  point.view = square_at(picture, tiles_a_side);
+  point.range = map.views[point.view].range;
+  return encode_depth(fetch_depth(point, ivec2(picture * view_size(point.view))));
+}
+#else
+uniform sampler2DArray blurred_map;
+
+/// The first view, as the map keeps it.
+vec4 texel_in_picture(vec2 picture) {
+  return texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0);
 }
 
 /// Mean of the map over the texels that the pixel covers.
@@ -52,6 +122,25 @@ vec4 read_blurred(ShadowQuery query, MapPoint point) {
   }
   return sum;
 }
+
+/// Logarithm of the mean of what a map of logarithms encodes, interpolated between four texels; no
+/// sampler does that.
+float read_logarithms(MapPoint point) {
+  vec2 corner = point.texel - 0.5;
+  ivec2 first = ivec2(floor(corner));
+  vec2 share = corner - vec2(first);
+  ivec2 last = textureSize(blurred_map, 0).xy - 1;
+  vec4 values, weights;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i & 1, i >> 1);
+    values[i] = texelFetch(blurred_map, ivec3(clamp(first + step, ivec2(0), last), point.view), 0).r;
+    weights[i] = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
+  }
+  float greatest = max(max(values.x, values.y), max(values.z, values.w));
+  return greatest + log(dot(weights, exp(values - greatest)));
+}
+
+#endif
 
 /// How the depth of the receiver's own plane scatters along the axis within what the pixel reads.
 struct PlaneScatter {
@@ -103,23 +192,6 @@ float granted_to_plane(float grant, float needed) {
   bool knows_plane = parameter_bias_strategy == bias_strategy_receiver_plane ||
                      parameter_bias_strategy == bias_strategy_auto;
   return knows_plane ? max(grant, map.texel.w * needed) : grant;
-}
-
-/// Logarithm of the mean of what a map of logarithms encodes, interpolated between four texels; no
-/// sampler does that.
-float read_logarithms(MapPoint point) {
-  vec2 corner = point.texel - 0.5;
-  ivec2 first = ivec2(floor(corner));
-  vec2 share = corner - vec2(first);
-  ivec2 last = textureSize(blurred_map, 0).xy - 1;
-  vec4 values, weights;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 step = ivec2(i & 1, i >> 1);
-    values[i] = texelFetch(blurred_map, ivec3(clamp(first + step, ivec2(0), last), point.view), 0).r;
-    weights[i] = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
-  }
-  float greatest = max(max(values.x, values.y), max(values.z, values.w));
-  return greatest + log(dot(weights, exp(values - greatest)));
 }
 
 /// Overflow is passed on as infinity, so that it shows: a clamp or comparison would hide it.

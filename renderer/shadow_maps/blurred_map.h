@@ -28,15 +28,20 @@ enum class MapFilter {
 
 /// What a map is made of.
 struct BlurSettings {
-  std::string encoder;  ///< path of a fragment stage that defines `vec4 encode_depth(float)`, of a
-                        ///< depth from 0 to 1, and ENCODE, and includes blurred_map.frag
+  std::string encoder;  ///< path of GLSL that defines `vec4 encode_depth(float)`, of a depth from
+                        ///< 0 to 1; the technique's shader includes it, too
   VkFormat format = VK_FORMAT_UNDEFINED;
   MapFilter filter = MapFilter::mean;
   std::string name = "blurred map";  ///< in the memory report
 };
 
+/// What goes before renderer/shadow_maps/blurred_map.frag where it reads depths and encodes them.
+std::string encoding(const std::string& encoder);
+
 /// A map of values that may be averaged, made of a depth map and blurred: moments, exponentials.
 /// Same views as the depth map, one layer each, with a mip chain where parameter mips asks for one.
+/// Of a layout that keeps depths in a buffer none is made: the shader encodes and filters what it
+/// reads.
 class BlurredMap {
  public:
   /// What it allocates beside the depth map.
@@ -46,7 +51,7 @@ class BlurredMap {
   /// Two passes, "encode and blur" along rows and "blur" along columns, then "mips".
   void draw(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings);
 
-  /// Name for renderer/shadow_maps/blurred_map.glsl: "blurred_map".
+  /// Name for renderer/shadow_maps/blurred_map.glsl: "blurred_map"; none where none was made.
   void bind(vulkan::Bindings& bindings, const std::string& name = "blurred_map") const;
 
   const vulkan::Image& image() const { return image_; }

@@ -1,6 +1,7 @@
 #include "renderer/shadow_maps/blurred_map.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/filters.glsl"
+#include "techniques/esm/encoder.glsl"
 
 // Logarithm of the mean of exp(c z) over what the pixel covers; infinite after an overflow.
 float filtered_logarithm(ShadowQuery query, MapPoint point) {
@@ -12,9 +13,19 @@ float filtered_logarithm(ShadowQuery query, MapPoint point) {
 }
 
 #ifdef variant_fallback_z_max
+// Greatest depth in the blur's kernel around the four texels that are interpolated.
+#ifdef TEXELS_IN_BUFFER
+float farthest_depth(MapPoint point) {
+  ivec2 first = ivec2(floor(point.texel - 0.5));
+  float farthest = 0.0;
+  for (int y = -parameter_blur; y <= parameter_blur + 1; ++y)
+    for (int x = -parameter_blur; x <= parameter_blur + 1; ++x)
+      farthest = max(farthest, fetch_depth(point, first + ivec2(x, y)));
+  return farthest;
+}
+#else
 uniform sampler2DArray farthest_map;
 
-// Greatest depth in the blur's kernel around the four texels that are interpolated.
 float farthest_depth(MapPoint point) {
   ivec2 first = ivec2(floor(point.texel - 0.5));
   ivec2 last = textureSize(farthest_map, 0).xy - 1;
@@ -25,6 +36,7 @@ float farthest_depth(MapPoint point) {
   }
   return farthest;
 }
+#endif
 #endif
 
 // exp(c (z - d)) replaces a comparison only where nothing in the kernel lies behind the receiver
@@ -49,7 +61,7 @@ float filter_view(ShadowQuery query, int view) {
 
 // First view: the logarithm of what is stored, over c; magenta where it is no finite number.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
-  float stored = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0).r;
+  float stored = texel_in_picture(picture).r;
   if (!is_finite(vec4(stored))) return vec4(1.0, 0.0, 1.0, 1.0);
   if (parameter_filtering == filtering_linear) stored = log(stored);
   return vec4(vec3(stored / parameter_c), 1.0);

@@ -61,12 +61,12 @@ class ExponentialShadowMap : public Technique {
   static shadow_maps::BlurSettings exponential_settings(const ParameterValues& parameters) {
     const bool logarithmic = choice_of(parameters, "filtering") == "logarithmic";
     return {
-        .encoder = "techniques/esm/exponential.frag",
+        .encoder = "techniques/esm/encoder.glsl",
         .format = shadow_maps::float_format(parameters, 1),
         .filter = logarithmic ? shadow_maps::MapFilter::logarithmic : shadow_maps::MapFilter::mean};
   }
   static shadow_maps::BlurSettings farthest_settings() {
-    return {.encoder = "techniques/esm/farthest.frag",
+    return {.encoder = "techniques/esm/farthest.glsl",
             .format = VK_FORMAT_R32_SFLOAT,
             .filter = shadow_maps::MapFilter::maximum,
             .name = "farthest depths"};

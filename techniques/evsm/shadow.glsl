@@ -1,6 +1,7 @@
 #include "renderer/shadow_maps/blurred_map.glsl"
 #include "renderer/shadow_maps/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
+#include "techniques/evsm/encoder.glsl"
 
 // Bounds by the moments of exp(c z): far from the receiver's own depth the warp stretches distances.
 // A deviation of depth is one of the warped depth by the warp's slope.
@@ -35,7 +36,7 @@ float filter_view(ShadowQuery query, int view) {
 // First view: logarithms of both means as depths, positive red and negative green; magenta where a
 // moment is no finite number.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
-  vec4 moments = texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0);
+  vec4 moments = texel_in_picture(picture);
   if (!is_finite(moments)) return vec4(1.0, 0.0, 1.0, 1.0);
   float negative = parameter_components == components_4
                        ? 0.5 - log(max(-moments.z, 1e-38)) / parameter_c_negative : 0.0;

@@ -45,7 +45,7 @@ class ExponentialVarianceShadowMap : public Technique {
  private:
   static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
     const int components = choice_of(parameters, "components") == "4" ? 4 : 2;
-    return {.encoder = "techniques/evsm/warped_moments.frag",
+    return {.encoder = "techniques/evsm/encoder.glsl",
             .format = shadow_maps::float_format(parameters, components)};
   }
 

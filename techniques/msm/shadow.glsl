@@ -1,6 +1,6 @@
 #include "renderer/shadow_maps/blurred_map.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "techniques/msm/quantization.glsl"
+#include "techniques/msm/encoder.glsl"
 
 // Moments of any depths whatever are mixed in by this share, so that rounding cannot leave what a
 // distribution may have: the Hankel matrix stays positive definite.
@@ -61,7 +61,7 @@ float filter_view(ShadowQuery query, int view) {
 
 // First view: mean depth red, deviation from it green, ten times enlarged.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
-  vec4 moments = moments_of_texel(texelFetch(blurred_map, ivec3(ivec2(picture * map.texel.x), 0), 0));
+  vec4 moments = moments_of_texel(texel_in_picture(picture));
   float deviation = 0.5 * sqrt(max(moments.y - moments.x * moments.x, 0.0));
   return vec4(0.5 * moments.x + 0.5, 10.0 * deviation, 0.0, 1.0);
 }

@@ -33,7 +33,7 @@ class MomentShadowMap : public Technique {
  private:
   static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
     const bool unorm16 = choice_of(parameters, "precision") == "unorm16";
-    return {.encoder = "techniques/msm/moments.frag",
+    return {.encoder = "techniques/msm/encoder.glsl",
             .format = unorm16 ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT};
   }
 

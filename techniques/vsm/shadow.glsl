@@ -1,6 +1,7 @@
 #include "renderer/shadow_maps/blurred_map.glsl"
 #include "renderer/shadow_maps/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
+#include "techniques/vsm/encoder.glsl"
 
 float filter_view(ShadowQuery query, int view) {
   MapPoint point = locate(query, view, float(parameter_blur));
@@ -11,6 +12,6 @@ float filter_view(ShadowQuery query, int view) {
 
 // First view: mean depth red, deviation from it green, ten times enlarged.
 vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
-  vec2 moments = textureLod(blurred_map, vec3(picture, 0.0), 0.0).rg;
+  vec2 moments = texel_in_picture(picture).rg;
   return vec4(moments.x, 10.0 * sqrt(max(moments.y - moments.x * moments.x, 0.0)), 0.0, 1.0);
 }

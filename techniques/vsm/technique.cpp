@@ -28,7 +28,7 @@ class VarianceShadowMap : public Technique {
 
  private:
   static shadow_maps::BlurSettings map_settings(const ParameterValues& parameters) {
-    return {.encoder = "techniques/vsm/moments.frag",
+    return {.encoder = "techniques/vsm/encoder.glsl",
             .format = shadow_maps::float_format(parameters, 2)};
   }
 

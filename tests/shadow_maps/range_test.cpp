@@ -120,14 +120,16 @@ TEST(Ranges, of_what_is_seen_serve_all_six_views_of_a_point_light) {
 }
 
 TEST(Ranges, of_boxes_are_each_face_s_own) {
-  // Walls 2 m beside a point light, casters half way and nearer, and the ground 40 m below: the face
-  // that looks at a wall has its depths from 1 m to the wall's back, unless the filter averages them.
+  // Walls 2 m beside a point light, casters half way and nearer, and the ground 40 m below: the
+  // face that looks at a wall has its depths from 1 m to the wall's back, unless the filter
+  // averages them.
   Scene scene = empty_scene(50.0, 60.0);
   add_plate(scene, {-20, -20}, {20, 20}, -40.0);
   for (const double side : {-1.0, 1.0})
     for (const bool turned : {false, true}) {
       const auto box = [&](double from, double to, double up) {
-        const double near = std::min(side * from, side * to), far = std::max(side * from, side * to);
+        const double near = std::min(side * from, side * to),
+                     far = std::max(side * from, side * to);
         if (turned)
           add_box(scene, {-0.2, up - 0.2, near}, {0.2, up + 0.2, far});
         else

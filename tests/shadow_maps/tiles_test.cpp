@@ -285,6 +285,30 @@ TEST(Tiles, beyond_a_square_of_ones_own_is_light) {
   EXPECT_EQ(lost, far_shadows);
 }
 
+TEST(Tiles, filter_what_is_encoded_as_well_as_one_view_does) {
+  const Scene scene = avenue();
+  const ImageF truth = HardTruth(scene).visibility("", picture, picture);
+  const std::pair<const char*, ParameterValues> filters[] = {
+      {"vsm", {}},
+      {"evsm", {}},
+      {"msm", {}},
+      {"msm", {{"precision", "unorm16"}, {"moment_bias", 6e-5}}},
+      {"esm", {}},
+      {"esm", {{"filtering", "logarithmic"}, {"mips", false}, {"c", 300.0}}},
+      {"esm", {{"fallback", "z-max"}, {"blur_filter", "box"}}}};
+  for (const auto& [technique, own] : filters) {
+    SCOPED_TRACE(technique);
+    const auto error = [&](const std::string& layout) {
+      ParameterValues values = own;
+      values.emplace("layout", layout);
+      values.emplace("map_size", 1024);
+      const RenderResult result = draw(scene, technique, values, picture);
+      return visibility_error(result.visibility, truth, result.judged).rms;
+    };
+    for (const char* layout : {"iasm", "iasm-gpu"}) EXPECT_LT(error(layout), error("single"));
+  }
+}
+
 TEST(Tiles, refuse_filters_that_need_an_image) {
   try {
     draw(avenue(), "pcf", {{"layout", "iasm"}, {"filter", "hardware-bilinear"}}, 16);

@@ -1,5 +1,4 @@
-// Moments of depth warped by exponentials, filtered along rows. Depth 1 is the cleared map's.
-#define ENCODE
+// Moments of depth warped by exponentials. Depth 1 is the cleared map's.
 #include "renderer/shadow_maps/half_range.glsl"
 vec4 encode_depth(float depth) {
   float positive = exp(parameter_c_positive * depth);
@@ -8,4 +7,3 @@ vec4 encode_depth(float depth) {
   return vec4(in_format(positive), in_format(positive * positive), -in_format(negative),
               in_format(negative * negative));
 }
-#include "renderer/shadow_maps/blurred_map.frag"
