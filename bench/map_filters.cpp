@@ -13,8 +13,8 @@
 
 #include "bench/program.h"
 #include "renderer/frame/parameter_glsl.h"
-#include "renderer/shadow_maps/blurred_map.h"
-#include "renderer/shadow_maps/summed_area.h"
+#include "renderer/shadow_maps/filters/blurred_map.h"
+#include "renderer/shadow_maps/filters/summed_area.h"
 #include "renderer/vulkan/commands.h"
 #include "techniques/registry.h"
 
@@ -207,8 +207,9 @@ class Filters {
   void draw(vulkan::Commands& commands, const std::string& encoding, const char* name,
             const vulkan::Image& source, const vulkan::Image& target) {
     vulkan::ProgramSource program;
-    program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                      {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/blurred_map.frag"}};
+    program.stages = {
+        {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+        {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/filters/blurred_map.frag"}};
     program.preamble = declarations_ + encoding;
     vulkan::GraphicsState state;
     state.color_formats = {format_};
@@ -243,9 +244,9 @@ class Filters {
     bindings.buffer("SummedAreaBlock", table_.whole());
     bindings.texture("shadow_map", depth_, vulkan::Sampling::nearest);
     for (const char* own : {"", "#define COLUMNS\n"}) {
-      commands.bind(
-          pipelines_.compute("renderer/shadow_maps/summed_area.comp", table_declarations_ + own),
-          bindings);
+      commands.bind(pipelines_.compute("renderer/shadow_maps/filters/summed_area.comp",
+                                       table_declarations_ + own),
+                    bindings);
       commands.constants(static_cast<std::int32_t>(subject_.size));
       commands.dispatch((subject_.size + 7) / 8, 1);
       commands.barrier();

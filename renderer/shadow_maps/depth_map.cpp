@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "renderer/error.h"
-#include "renderer/frame/caster_defects.h"
-#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/bias/strategies.h"
+#include "renderer/shadow_maps/views/light_view.h"
 
 namespace penumbra::shadow_maps {
 
@@ -60,26 +60,7 @@ std::vector<Parameter> map_parameters() {
       "receiver's. visible: from the nearest to the farthest place that the camera sees and that "
       "faces the light, with casters before it clamped onto near. fixed: from the light to the end "
       "of the scene."));
-  list.push_back(
-      choice("bias_strategy", "receiver-plane",
-             {"constant", "slope", "normal-offset", "receiver-plane", "back-faces", "second-depth",
-              "midpoint", "dual-depth", "auto"},
-             "How self-shadowing is prevented. constant: depth is moved away from the light, for "
-             "facets at 45 degrees. slope: by what each caster's facet spans over the kernel. "
-             "normal-offset: the receiver is moved along its normal. receiver-plane: every texel "
-             "is compared with the receiver's plane at the texel's own place. back-faces: only "
-             "faces turned away from the light are drawn. second-depth: the second surface from "
-             "the light is. midpoint: the middle between the first two. dual-depth: that, but "
-             "never far behind the first. auto: receiver-plane, and the map moved by as much as "
-             "that grants, never past the middle.")
-          .compiled());
-  list.push_back(real("bias", 0.0, {0.0, 1000.0},
-                      "Distance along the light's axis granted to every comparison, beside what "
-                      "the strategy finds.")
-                     .in("m"));
-  list.push_back(real("slope_scale", 1.0, {0.0, 16.0},
-                      "Factor of what the strategy finds from texel size, kernel, slope and "
-                      "rounding; 1 is enough, 0 leaves only bias."));
+  for (const Parameter& parameter : bias_parameters()) list.push_back(parameter);
   return list;
 }
 
@@ -131,26 +112,6 @@ namespace {
 
 /// Of the two surfaces that some bias strategies tell apart.
 constexpr VkFormat layer_format = VK_FORMAT_D32_SFLOAT;
-
-/// Strategies that ask for the surface behind the first.
-bool knows_two_surfaces(const ParameterValues& parameters) {
-  const std::string& strategy = choice_of(parameters, "bias_strategy");
-  return strategy == "second-depth" || strategy == "midpoint" || strategy == "dual-depth" ||
-         strategy == "auto";
-}
-
-/// Strategies that draw other surfaces than the first rely on casters that enclose space.
-void note_open_casters(PrepareContext& context) {
-  const std::string& strategy = choice_of(context.input.parameters, "bias_strategy");
-  if (strategy != "back-faces" && !knows_two_surfaces(context.input.parameters)) return;
-  const std::size_t open = open_casters(context.scene);
-  if (open > 0)
-    context.notes.push_back(
-        "bias_strategy " + strategy +
-        " takes casters for closed bodies; shadows of those with open edges are "
-        "late or missing: " +
-        std::to_string(open));
-}
 
 /// What the views of a map draw; what touches several is drawn as often.
 void note_drawn(PrepareContext& context, const std::vector<DrawnCasters>& drawn) {
@@ -241,7 +202,7 @@ void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   if (layout.ranking != TileRanking::none) {
     if (knows_two_surfaces(input.parameters))
       throw unsupported("layout " + layout.id + " keeps one surface; bias_strategy " +
-                            choice_of(input.parameters, "bias_strategy") + " needs two",
+                            chosen_strategy(input.parameters).id + " needs two",
                         "bias_strategy");
     Tiles::require(input, layout.ranking, needs);
     return;
@@ -315,7 +276,6 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
 
 void DepthMap::draw_casters(PrepareContext& context, const Views& views,
                             const vulkan::Image& target, const std::string& layer) const {
-  const std::string& strategy = choice_of(context.input.parameters, "bias_strategy");
   CasterProgram program;
   program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/depth_map.vert"},
                     {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/depth_map.frag"}};
@@ -324,7 +284,8 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
   program.state.depth_test = program.state.depth_write = true;
   program.state.depth_compare = VK_COMPARE_OP_LESS;
   program.state.depth_clamp = std::none_of(views.begin(), views.end(), cuts_casters);
-  if (strategy == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
+  if (chosen_strategy(context.input.parameters).surfaces == MapSurfaces::back_faces)
+    program.cull = VK_CULL_MODE_FRONT_BIT;
 
   std::vector<DrawnCasters> drawn;
   context.pass("shadow map", [&](vulkan::Commands& commands) {
@@ -361,7 +322,7 @@ void DepthMap::draw_layers(PrepareContext& context, const Views& views) {
 
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/layered_depths.frag"}};
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/bias/layered_depths.frag"}};
   source.preamble = context.declarations;
   vulkan::GraphicsState state;
   state.depth_format = image_.description().format;

@@ -1,6 +1,7 @@
 // Depth computed anew for every fragment: interpolated depth would be wrong inside triangles.
 #include "renderer/shaders/caster.glsl"
-#include "renderer/shadow_maps/depth_coding.glsl"
+#include "renderer/shadow_maps/bias/strategies.glsl"
+#include "renderer/shadow_maps/texels/depth_coding.glsl"
 
 #ifdef TILE
 layout(std140) uniform TileBlock { uvec4 tile; };  // x its index
@@ -42,10 +43,8 @@ void main() {
 #else
   float texel = texel_size(view, distance) * widest_texel(spread_at(view, gl_FragCoord.xy));
   float bias = view.range.w;
-  if (parameter_bias_strategy == bias_strategy_slope ||
-      (parameter_bias_strategy == bias_strategy_back_faces && gl_FrontFacing)) {
-    // What this facet spans over the kernel; a facet seen edge-on is not followed to infinity. The
-    // front faces of double-sided materials stand in maps of back faces too.
+  if (moves_facet(gl_FrontFacing)) {
+    // What this facet spans over the kernel; a facet seen edge-on is not followed to infinity.
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
     bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }

@@ -8,7 +8,8 @@
 #ifndef PENUMBRA_DEPTH_MAP_GLSL
 #define PENUMBRA_DEPTH_MAP_GLSL
 #include "renderer/shaders/shadow_query.glsl"
-#include "renderer/shadow_maps/depth_coding.glsl"
+#include "renderer/shadow_maps/bias/strategies.glsl"
+#include "renderer/shadow_maps/texels/depth_coding.glsl"
 
 int view_count() { return int(map.texel.z); }
 
@@ -70,21 +71,6 @@ struct MapPoint {
 /// How far the nearest texel's centre may be, in texels, from a place that a filter reaches.
 float texel_reach(float kernel_radius) { return 1.41421356 * (0.5 + kernel_radius); }
 
-/// What the receiver is granted in every comparison, in widths of a texel. The map itself was moved by
-/// the constant bias and, with strategy slope, by the slope of its casters; with those that know two
-/// surfaces, towards the second.
-float granted_texels(float kernel_radius) {
-  // What a facet at 45 degrees spans over the kernel.
-  if (parameter_bias_strategy == bias_strategy_constant) return 0.5 + kernel_radius;
-  // The receiver's plane is known, but bent surfaces leave it. Half a texel and a quarter of the radius
-  // make as many pixels too dark as too bright on the survey's scenes.
-  if (parameter_bias_strategy == bias_strategy_normal_offset ||
-      parameter_bias_strategy == bias_strategy_receiver_plane ||
-      parameter_bias_strategy == bias_strategy_auto)
-    return 0.5 + 0.25 * kernel_radius;
-  return 0.0;
-}
-
 /// A function dot(f, (d, 1)) of steps on the unwarped map as one of steps in texels; ratios of two
 /// such stay what they are.
 vec3 over_texels(Spread spread, vec3 f) {
@@ -99,7 +85,7 @@ MapPoint locate(ShadowQuery query, int view_index, float kernel_radius) {
   point.range = view.range;
   bool perspective = view.origin.w > 0.5;
   vec3 position = query.position;
-  if (parameter_bias_strategy == bias_strategy_normal_offset) {
+  if (moves_along_normal()) {
     // Along the normal until the receiver's own plane, and any convex body behind it, lies wholly
     // behind the moved point over every texel that the filter reads. A step d across the axis leaves
     // the plane by d sin(angle between normal and axis).
@@ -154,7 +140,7 @@ float distance_of_depth(MapPoint point, float depth) {
 }
 
 #ifdef TEXELS_IN_BUFFER
-#include "renderer/shadow_maps/tile_texels.glsl"
+#include "renderer/shadow_maps/texels/tile_texels.glsl"
 #else
 uniform sampler2DArray shadow_map;
 
@@ -175,10 +161,7 @@ float texel_grant(MapPoint point, ivec2 texel) { return point.grant; }
 /// it, where the map was given a far of its own.
 float receiver_depth(MapPoint point, ivec2 texel) {
   float distance = point.distance;
-  // Maps of back faces need it where a body is thinner than its slope over a texel.
-  if (parameter_bias_strategy == bias_strategy_receiver_plane ||
-      parameter_bias_strategy == bias_strategy_auto ||
-      parameter_bias_strategy == bias_strategy_back_faces) {
+  if (compares_with_plane()) {
     float met = plane_distance(point, texel_center(point, texel) - point.texel);
     distance += map.texel.w * (met - point.distance);
   }

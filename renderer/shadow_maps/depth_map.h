@@ -2,8 +2,8 @@
 
 #include "renderer/frame/prepare_context.h"
 #include "renderer/shadow_maps/layout.h"
-#include "renderer/shadow_maps/seen_samples.h"
-#include "renderer/shadow_maps/tiles.h"
+#include "renderer/shadow_maps/texels/tiles.h"
+#include "renderer/shadow_maps/views/seen_samples.h"
 
 namespace penumbra::shadow_maps {
 

@@ -1,7 +1,7 @@
 // Pictures that every map technique offers.
 #ifndef PENUMBRA_MAP_DIAGNOSTICS_GLSL
 #define PENUMBRA_MAP_DIAGNOSTICS_GLSL
-#include "renderer/shadow_maps/footprint.glsl"
+#include "renderer/shadow_maps/filters/footprint.glsl"
 
 // Which square of a square picture a place lies in, and where in it.
 int square_at(inout vec2 picture, int squares_a_side) {

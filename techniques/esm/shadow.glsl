@@ -1,6 +1,6 @@
-#include "renderer/shadow_maps/blurred_map.glsl"
+#include "renderer/shadow_maps/filters/blurred_map.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "renderer/shadow_maps/filters.glsl"
+#include "renderer/shadow_maps/filters/percentage_closer.glsl"
 #include "techniques/esm/encoder.glsl"
 
 // Logarithm of the mean of exp(c z) over what the pixel covers; infinite after an overflow.

@@ -1,5 +1,5 @@
 #include "renderer/error.h"
-#include "renderer/shadow_maps/prefiltered_map.h"
+#include "renderer/shadow_maps/filters/prefiltered_map.h"
 
 namespace penumbra::techniques {
 namespace {

@@ -1,5 +1,5 @@
 // Moments of depth warped by exponentials. Depth 1 is the cleared map's.
-#include "renderer/shadow_maps/half_range.glsl"
+#include "renderer/shadow_maps/filters/half_range.glsl"
 vec4 encode_depth(float depth) {
   float positive = exp(parameter_c_positive * depth);
   // Centred, so that neither end underflows before the other overflows.

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/blurred_map.glsl"
+#include "renderer/shadow_maps/filters/blurred_map.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "techniques/msm/encoder.glsl"
 

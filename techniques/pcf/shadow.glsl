@@ -1,6 +1,6 @@
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "renderer/shadow_maps/filters.glsl"
-#include "renderer/shadow_maps/footprint.glsl"
+#include "renderer/shadow_maps/filters/percentage_closer.glsl"
+#include "renderer/shadow_maps/filters/footprint.glsl"
 
 #ifdef variant_filter_hardware_bilinear
 uniform sampler2DArrayShadow shadow_map_compare;

@@ -1,6 +1,6 @@
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "renderer/shadow_maps/filters.glsl"
-#include "renderer/shadow_maps/nearest_depths.glsl"
+#include "renderer/shadow_maps/filters/percentage_closer.glsl"
+#include "renderer/shadow_maps/filters/nearest_depths.glsl"
 
 // The light's extent as the map sees it. A blocker at distance s along the axis hides the light from a
 // receiver at distance d wherever it lies within reach(s, d) of the receiver's place, in units of

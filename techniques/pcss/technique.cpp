@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/nearest_depths.h"
+#include "renderer/shadow_maps/filters/nearest_depths.h"
 
 namespace penumbra::techniques {
 namespace {

@@ -1,7 +1,7 @@
-#include "renderer/shadow_maps/chebyshev.glsl"
+#include "renderer/shadow_maps/filters/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "renderer/shadow_maps/footprint.glsl"
-#include "renderer/shadow_maps/summed_area.glsl"
+#include "renderer/shadow_maps/filters/footprint.glsl"
+#include "renderer/shadow_maps/filters/summed_area.glsl"
 
 // Width of the filter, texels: the kernel, or what the pixel covers where that is wider.
 int filter_width(ShadowQuery query, MapPoint point) {

@@ -1,5 +1,5 @@
-#include "renderer/shadow_maps/blurred_map.h"
-#include "renderer/shadow_maps/summed_area.h"
+#include "renderer/shadow_maps/filters/blurred_map.h"
+#include "renderer/shadow_maps/filters/summed_area.h"
 
 namespace penumbra::techniques {
 namespace {

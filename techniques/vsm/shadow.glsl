@@ -1,5 +1,5 @@
-#include "renderer/shadow_maps/blurred_map.glsl"
-#include "renderer/shadow_maps/chebyshev.glsl"
+#include "renderer/shadow_maps/filters/blurred_map.glsl"
+#include "renderer/shadow_maps/filters/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "techniques/vsm/encoder.glsl"
 

@@ -11,7 +11,7 @@
 #include "drawing.h"
 #include "hard_truth.h"
 #include "renderer/error.h"
-#include "renderer/shadow_maps/tiles.h"
+#include "renderer/shadow_maps/texels/tiles.h"
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {

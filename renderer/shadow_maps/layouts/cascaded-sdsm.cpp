@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/shadow_maps/cascades.h"
-#include "renderer/shadow_maps/warp.h"
+#include "renderer/shadow_maps/views/cascades.h"
+#include "renderer/shadow_maps/views/warp.h"
 
 namespace penumbra::shadow_maps {
 namespace {

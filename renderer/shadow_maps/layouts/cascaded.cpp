@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/shadow_maps/cascades.h"
-#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/views/cascades.h"
+#include "renderer/shadow_maps/views/light_view.h"
 
 namespace penumbra::shadow_maps {
 namespace {

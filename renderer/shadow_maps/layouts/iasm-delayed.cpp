@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/tiles.h"
+#include "renderer/shadow_maps/texels/tiles.h"
 
 namespace penumbra::shadow_maps {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "renderer/scene/convex_clip.h"
-#include "renderer/shadow_maps/warp.h"
+#include "renderer/shadow_maps/views/warp.h"
 
 namespace penumbra::shadow_maps {
 namespace {

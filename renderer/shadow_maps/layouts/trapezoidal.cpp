@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "renderer/shadow_maps/light_view.h"
-#include "renderer/shadow_maps/warp.h"
+#include "renderer/shadow_maps/views/light_view.h"
+#include "renderer/shadow_maps/views/warp.h"
 
 namespace penumbra::shadow_maps {
 namespace {

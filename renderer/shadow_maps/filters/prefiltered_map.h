@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/filters/blurred_map.h"
 
 namespace penumbra::shadow_maps {
 

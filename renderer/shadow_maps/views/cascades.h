@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/shadow_maps/seen.h"
+#include "renderer/shadow_maps/views/seen.h"
 
 /// What layouts of cascades share.
 namespace penumbra::shadow_maps {

@@ -2,7 +2,7 @@
 // or with COLUMNS along columns. A group works on eight lines at once, each cut into parts: parts are
 // summed, what lies before a part is the sum of the parts before it, then its own values are added one
 // by one.
-#include "renderer/shadow_maps/summed_area_types.glsl"
+#include "renderer/shadow_maps/filters/summed_area_types.glsl"
 
 const int lines = 8;
 const int parts = 32;

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/nearest_depths.h"
+#include "renderer/shadow_maps/filters/nearest_depths.h"
 
 #include <algorithm>
 #include <bit>
@@ -37,7 +37,7 @@ void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {
     image_ = vulkan::Image(context.device, context.memory, "nearest depths", description);
   }
   const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/shadow_maps/nearest_depths.comp");
+      context.pipelines.compute("renderer/shadow_maps/filters/nearest_depths.comp");
   vulkan::Bindings bindings;
   bindings.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
   bindings.storage_image("chain", image_);

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/place_tiles.h"
+#include "renderer/shadow_maps/views/place_tiles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include "renderer/error.h"
 #include "renderer/scene/convex_clip.h"
-#include "renderer/shadow_maps/light_view.h"
-#include "renderer/shadow_maps/seen.h"
-#include "renderer/shadow_maps/tiles.h"
+#include "renderer/shadow_maps/texels/tiles.h"
+#include "renderer/shadow_maps/views/light_view.h"
+#include "renderer/shadow_maps/views/seen.h"
 
 namespace penumbra::shadow_maps {
 namespace {

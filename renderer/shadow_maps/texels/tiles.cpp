@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/tiles.h"
+#include "renderer/shadow_maps/texels/tiles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,9 @@
 #include <numeric>
 
 #include "renderer/error.h"
-#include "renderer/shadow_maps/light_view.h"
-#include "renderer/shadow_maps/place_tiles.h"
+#include "renderer/shadow_maps/bias/strategies.h"
+#include "renderer/shadow_maps/views/light_view.h"
+#include "renderer/shadow_maps/views/place_tiles.h"
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -175,7 +176,7 @@ void Tiles::measure(PrepareContext& context, const shader::MapData& placed,
   bindings.buffer("TileSumsBlock", sums_.whole());
   bindings.texture("seen_positions", positions, vulkan::Sampling::nearest);
   const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/shadow_maps/tile_importance.comp");
+      context.pipelines.compute("renderer/shadow_maps/texels/tile_importance.comp");
   const vulkan::ImageDescription& grid = positions.description();
   context.pass("importance of tiles", [&](vulkan::Commands& commands) {
     vkCmdFillBuffer(commands.handle(), sums_.handle(), 0, VK_WHOLE_SIZE, 0);
@@ -221,7 +222,7 @@ vulkan::BufferRange Tiles::rank_on_device(PrepareContext& context, const shader:
   bindings.buffer("TileSumsBlock", sums_.whole());
   bindings.buffer("RankedMapBlock", ranked_.whole());
   const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/shadow_maps/tile_ranks.comp");
+      context.pipelines.compute("renderer/shadow_maps/texels/tile_ranks.comp");
   context.pass("ranks of tiles", [&](vulkan::Commands& commands) {
     commands.bind(pipeline, bindings);
     commands.dispatch(1);
@@ -269,7 +270,8 @@ std::vector<DrawnCasters> Tiles::draw(PrepareContext& context,
   program.preamble = context.declarations + "#define TILE\n";
   program.state.depth_clamp = true;
   program.cull_by_spheres = choice_of(parameters, "tile_culling") == "spheres";
-  if (choice_of(parameters, "bias_strategy") == "back-faces") program.cull = VK_CULL_MODE_FRONT_BIT;
+  if (chosen_strategy(parameters).surfaces == MapSurfaces::back_faces)
+    program.cull = VK_CULL_MODE_FRONT_BIT;
   std::vector<DrawnCasters> drawn(tiles);
   context.pass("shadow map", [&](vulkan::Commands& commands) {
     // 0 is far: lit.

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/cascades.h"
+#include "renderer/shadow_maps/views/cascades.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Bounds of what is seen in each view, along the view's axes.
 #include "renderer/shaders/frame.glsl"
-#include "renderer/shadow_maps/float_places.glsl"
+#include "renderer/shadow_maps/texels/float_places.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -14,7 +14,7 @@ class NearestDepths {
   /// One pass, "nearest depths". Takes half as many bytes as the map if its size is a power of two.
   void draw(PrepareContext& context, const DepthMap& depth);
 
-  /// Name for renderer/shadow_maps/nearest_depths.glsl: "nearest_depths".
+  /// Name for renderer/shadow_maps/filters/nearest_depths.glsl: "nearest_depths".
   void bind(vulkan::Bindings& bindings) const;
 
  private:

@@ -1,5 +1,6 @@
 // The map to compare with, from the two surfaces that are nearest to the light.
-#include "renderer/shadow_maps/depth_coding.glsl"
+#include "renderer/shadow_maps/bias/strategies.glsl"
+#include "renderer/shadow_maps/texels/depth_coding.glsl"
 
 uniform sampler2DArray first_depths;
 uniform sampler2DArray second_depths;  // 1 where there is no second surface
@@ -10,11 +11,7 @@ layout(push_constant) uniform LayerBlock { uint view; } layer;
 float greatest_offset(MapView view, float first) {
   float distance = view.range.x + first / view.range.z;
   float texel = texel_size(view, distance) * widest_texel(spread_at(view, gl_FragCoord.xy));
-  // auto: as much again as receivers are granted, see granted_texels. dual-depth: what a facet spans
-  // over the kernel that rises four units for each across.
-  float texels = parameter_bias_strategy == bias_strategy_auto ? 0.5 + 0.25 * map.texel.y
-                                                               : 4.0 * (0.5 + map.texel.y);
-  return map.texel.w * texels * texel;
+  return map.texel.w * texels_behind_first(map.texel.y) * texel;
 }
 
 void main() {
@@ -22,11 +19,7 @@ void main() {
   ivec3 texel = ivec3(gl_FragCoord.xy, layer.view);
   float first = texelFetch(first_depths, texel, 0).r;
   float second = texelFetch(second_depths, texel, 0).r;
-  float depth = 0.5 * (first + second);  // midpoint
-  if (parameter_bias_strategy == bias_strategy_second_depth) depth = second;
-  if (parameter_bias_strategy == bias_strategy_dual_depth ||
-      parameter_bias_strategy == bias_strategy_auto)
-    depth = min(depth, first + greatest_offset(view, first) * view.range.z);
+  float depth = between_surfaces(first, second, greatest_offset(view, first) * view.range.z);
   float bias =
       view.range.w + map.texel.w * rounding_grant(view.range, view.range.x + depth / view.range.z);
   gl_FragDepth = kept_depth(view.range, clamp(depth + bias * view.range.z, 0.0, 1.0));

@@ -17,7 +17,8 @@ Parameter deviation_parameter();
 /// `precision`: fp16 or fp32, for formats of a map. `meaning` says what fails with fewer bits.
 Parameter precision_parameter(const std::string& meaning);
 
-/// The picture `mip-level` of every program that includes renderer/shadow_maps/blurred_map.glsl.
+/// The picture `mip-level` of every program that includes
+/// renderer/shadow_maps/filters/blurred_map.glsl.
 Diagnostic mip_level_diagnostic();
 
 enum class MapFilter {
@@ -35,7 +36,8 @@ struct BlurSettings {
   std::string name = "blurred map";  ///< in the memory report
 };
 
-/// What goes before renderer/shadow_maps/blurred_map.frag where it reads depths and encodes them.
+/// What goes before renderer/shadow_maps/filters/blurred_map.frag where it reads depths and encodes
+/// them.
 std::string encoding(const std::string& encoder);
 
 /// A map of values that may be averaged, made of a depth map and blurred: moments, exponentials.
@@ -51,7 +53,8 @@ class BlurredMap {
   /// Two passes, "encode and blur" along rows and "blur" along columns, then "mips".
   void draw(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings);
 
-  /// Name for renderer/shadow_maps/blurred_map.glsl: "blurred_map"; none where none was made.
+  /// Name for renderer/shadow_maps/filters/blurred_map.glsl: "blurred_map"; none where none was
+  /// made.
   void bind(vulkan::Bindings& bindings, const std::string& name = "blurred_map") const;
 
   const vulkan::Image& image() const { return image_; }

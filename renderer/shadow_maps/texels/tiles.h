@@ -5,7 +5,7 @@
 
 #include "renderer/frame/prepare_context.h"
 #include "renderer/shadow_maps/layout.h"
-#include "renderer/shadow_maps/seen_samples.h"
+#include "renderer/shadow_maps/views/seen_samples.h"
 
 /// Irregular adaptive shadow maps (Alecu 2014, 3): a square of the plane across the light's
 /// direction is cut into 4 x 4 tiles of one width, which get more texels the more of the picture

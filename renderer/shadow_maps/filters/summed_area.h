@@ -17,7 +17,7 @@ class SummedAreaTable {
   /// has no doubles.
   void draw(PrepareContext& context, const DepthMap& depth);
 
-  /// Name for renderer/shadow_maps/summed_area.glsl: "SummedAreaBlock".
+  /// Name for renderer/shadow_maps/filters/summed_area.glsl: "SummedAreaBlock".
   void bind(vulkan::Bindings& bindings) const;
 
  private:

@@ -4,7 +4,7 @@
 // Without a further definition the filter takes means. FILTER_LOGARITHMS: the first component holds
 // logarithms, and the result is the logarithm of the mean of what they encode. FILTER_MAXIMUM: the
 // result is the greatest value.
-#include "renderer/shadow_maps/blur_weights.glsl"
+#include "renderer/shadow_maps/filters/blur_weights.glsl"
 
 #ifdef ENCODE
 uniform sampler2DArray shadow_map;

@@ -1,6 +1,6 @@
 // Gives tiles their sizes and ranges, as Tiles::rank does on the host.
-#include "renderer/shadow_maps/float_places.glsl"
-#include "renderer/shadow_maps/tile_sums.glsl"
+#include "renderer/shadow_maps/texels/float_places.glsl"
+#include "renderer/shadow_maps/texels/tile_sums.glsl"
 
 layout(local_size_x = tile_count) in;
 

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/summed_area.h"
+#include "renderer/shadow_maps/filters/summed_area.h"
 
 #include "renderer/error.h"
 
@@ -56,7 +56,7 @@ void SummedAreaTable::draw(PrepareContext& context, const DepthMap& depth) {
   constexpr std::uint32_t lines = 8;  // of a group, as summed_area.comp has it
   const auto run = [&](const char* name, const std::string& own, const vulkan::Bindings& bindings) {
     const vulkan::Pipeline& pipeline = context.pipelines.compute(
-        "renderer/shadow_maps/summed_area.comp", context.declarations + own);
+        "renderer/shadow_maps/filters/summed_area.comp", context.declarations + own);
     context.pass(name, [&](vulkan::Commands& commands) {
       commands.bind(pipeline, bindings);
       commands.constants(static_cast<std::int32_t>(map.width));

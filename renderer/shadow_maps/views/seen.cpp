@@ -1,11 +1,11 @@
-#include "renderer/shadow_maps/seen.h"
+#include "renderer/shadow_maps/views/seen.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "renderer/scene/convex_clip.h"
-#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/views/light_view.h"
 
 namespace penumbra::shadow_maps {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <limits>
 
-#include "renderer/shadow_maps/light_view.h"
-#include "renderer/shadow_maps/seen.h"
+#include "renderer/shadow_maps/views/light_view.h"
+#include "renderer/shadow_maps/views/seen.h"
 
 /// Views that are focused on what the camera sees, and bent so that what is near the camera gets
 /// more texels.

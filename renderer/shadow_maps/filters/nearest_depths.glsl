@@ -2,7 +2,7 @@
 #ifndef PENUMBRA_NEAREST_DEPTHS_GLSL
 #define PENUMBRA_NEAREST_DEPTHS_GLSL
 #include "renderer/shadow_maps/depth_map.glsl"
-#include "renderer/shadow_maps/nearest_depths_layout.glsl"
+#include "renderer/shadow_maps/filters/nearest_depths_layout.glsl"
 
 #ifdef TEXELS_IN_BUFFER
 /// Tiles have no such chain: something may stand anywhere.

@@ -1,8 +1,8 @@
 // Adds up how much of the picture each tile matters to, and between which distances from the light
 // what is seen of it lies (Alecu 2014, 3.3 and 3.5).
 #include "renderer/shaders/frame.glsl"
-#include "renderer/shadow_maps/float_places.glsl"
-#include "renderer/shadow_maps/tile_sums.glsl"
+#include "renderer/shadow_maps/texels/float_places.glsl"
+#include "renderer/shadow_maps/texels/tile_sums.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

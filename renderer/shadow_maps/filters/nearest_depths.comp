@@ -1,5 +1,5 @@
 // One level of the chain of least depths, from the map (level 0) or the level before.
-#include "renderer/shadow_maps/nearest_depths_layout.glsl"
+#include "renderer/shadow_maps/filters/nearest_depths_layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

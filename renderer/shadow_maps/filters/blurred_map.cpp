@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/blurred_map.h"
+#include "renderer/shadow_maps/filters/blurred_map.h"
 
 #include <algorithm>
 #include <bit>
@@ -104,8 +104,9 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
   const auto run = [&](const std::string& name, const std::string& encoder,
                        const vulkan::Image& target, const vulkan::Bindings& bindings) {
     vulkan::ProgramSource source;
-    source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                     {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/blurred_map.frag"}};
+    source.stages = {
+        {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+        {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/filters/blurred_map.frag"}};
     source.preamble = context.declarations;
     if (!encoder.empty()) source.preamble += encoding(encoder);
     if (settings.filter == MapFilter::logarithmic) source.preamble += "#define FILTER_LOGARITHMS\n";

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/seen_samples.h"
+#include "renderer/shadow_maps/views/seen_samples.h"
 
 #include <algorithm>
 #include <bit>
@@ -53,8 +53,8 @@ void SeenSamples::draw(PrepareContext& context) {
                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
   }
   CasterProgram program;
-  program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/seen_samples.vert"},
-                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/seen_samples.frag"}};
+  program.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shadow_maps/views/seen_samples.vert"},
+                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/views/seen_samples.frag"}};
   program.all_surfaces = true;
   program.cull = VK_CULL_MODE_BACK_BIT;
   program.state.color_formats = {GeometryBuffer::position_format};
@@ -106,7 +106,7 @@ std::vector<Bounds> SeenSamples::bounds(PrepareContext& context,
   bindings.buffer("SeenBoundsBlock", found_.whole());
   bindings.texture("seen_positions", positions_, vulkan::Sampling::nearest);
   const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/shadow_maps/seen_bounds.comp");
+      context.pipelines.compute("renderer/shadow_maps/views/seen_bounds.comp");
   const vulkan::ImageDescription& grid = positions_.description();
   context.pass("bounds of seen samples", [&](vulkan::Commands& commands) {
     commands.bind(pipeline, bindings);

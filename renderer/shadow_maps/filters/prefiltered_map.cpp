@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/prefiltered_map.h"
+#include "renderer/shadow_maps/filters/prefiltered_map.h"
 
 namespace penumbra::shadow_maps {
 

@@ -2,7 +2,7 @@
 // for wide rectangles as for narrow ones (Crow 1984; Adorjan 2013, 2.2.1).
 #ifndef PENUMBRA_SUMMED_AREA_GLSL
 #define PENUMBRA_SUMMED_AREA_GLSL
-#include "renderer/shadow_maps/summed_area_types.glsl"
+#include "renderer/shadow_maps/filters/summed_area_types.glsl"
 
 layout(std430) readonly buffer SummedAreaBlock { TableSum summed_area[]; };
 

@@ -1,9 +1,9 @@
 // Reading a map that was filtered beforehand, or filtering texels of a buffer as they are read.
 #ifndef PENUMBRA_BLURRED_MAP_GLSL
 #define PENUMBRA_BLURRED_MAP_GLSL
-#include "renderer/shadow_maps/blur_weights.glsl"
+#include "renderer/shadow_maps/filters/blur_weights.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
-#include "renderer/shadow_maps/footprint.glsl"
+#include "renderer/shadow_maps/filters/footprint.glsl"
 
 /// What the map keeps of a depth; the technique's encoder.
 vec4 encode_depth(float depth);
@@ -189,9 +189,7 @@ PlaneScatter scatter_of_plane(ShadowQuery query, MapPoint point) {
 
 /// What the receiver is granted for it, m, with the strategies that know its plane.
 float granted_to_plane(float grant, float needed) {
-  bool knows_plane = parameter_bias_strategy == bias_strategy_receiver_plane ||
-                     parameter_bias_strategy == bias_strategy_auto;
-  return knows_plane ? max(grant, map.texel.w * needed) : grant;
+  return knows_plane() ? max(grant, map.texel.w * needed) : grant;
 }
 
 /// Overflow is passed on as infinity, so that it shows: a clamp or comparison would hide it.

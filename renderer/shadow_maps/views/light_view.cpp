@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/light_view.h"
+#include "renderer/shadow_maps/views/light_view.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "renderer/shadow_maps/warp.h"
+#include "renderer/shadow_maps/views/warp.h"
 
 #include <algorithm>
 #include <cmath>
