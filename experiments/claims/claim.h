@@ -14,8 +14,7 @@ enum class Verdict {
   not_reproduced,
   needs_gpu,  ///< measured on a processor: told, not judged
   needs_people,
-  needs_layout,  ///< no technique has the layouts that it is about
-  not_measured   ///< what it takes is there, and the set-up is missing or failed
+  not_measured  ///< the set-up failed
 };
 
 /// As documents write it.
@@ -45,9 +44,8 @@ struct Claim {
   std::string source;     ///< document and place
   std::string statement;  ///< what was published
   std::string rule;       ///< what must hold of the numbers; parts separated by semicolons
-  Outcome (*measure)(Laboratory&) = nullptr;
+  Outcome (*measure)(Laboratory&) = nullptr;  ///< null where it needs people
   Needs needs = Needs::nothing;
-  std::vector<std::string> layouts;  ///< of maps, as their parameter `layout` names them
 };
 
 /// All claims, family by family.

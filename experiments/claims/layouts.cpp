@@ -252,9 +252,6 @@ Outcome q47(Laboratory& lab) {
 }  // namespace
 
 std::vector<Claim> layout_claims() {
-  const std::vector<std::string> cascades{"cascaded"}, perspective{"perspective"};
-  const std::vector<std::string> warps{"perspective", "light-space-perspective", "trapezoidal",
-                                       "cascaded"};
   return {
       {"Q26", "S4 fig. 29, 32",
        "perspective maps beat plain ones near the camera and lose far away; cube clipping helps "
@@ -262,17 +259,16 @@ std::vector<Claim> layout_claims() {
        "error near the camera below that of a plain map, focused or not; far away above the "
        "focused "
        "one's; cube clipping lowers a lamp's error by more than a sun's",
-       q26, Needs::nothing, perspective},
+       q26},
       {"Q33", "S4", "perspective maps are sometimes much worse than plain ones",
-       "over 1.5 times the error of a plain focused map in the worst of 8 views", q33,
-       Needs::nothing, perspective},
+       "over 1.5 times the error of a plain focused map in the worst of 8 views", q33},
       {"Q38", "S3 2.1.1, S1 2.1",
        "a map of what the camera sees loses shadows of casters behind it; fitting keeps them",
        "of the pixels inside such a shadow each layout loses none; left out, all are lost", q38},
       {"Q39", "S3 2.1.1", "focused maps flicker at borders when camera or light moves",
        "points that change beyond those of exact shadows, not snapped, camera: over 0.002; snapped "
        "below a quarter of that; light: over 0.002",
-       q39, Needs::nothing, cascades},
+       q39},
       {"Q42", "S3 3.3.3, fig. 4.5", "wider blurs need fewer mip levels",
        "share of pixels at level 0 grows from 1 to 3 to 7 texels", q42},
       {"Q45", "S1 2.2, 2.3",
@@ -281,7 +277,7 @@ std::vector<Claim> layout_claims() {
        "error over a plain focused map's of the same bytes: each warp's at 90 degrees below that "
        "at "
        "12; which is 1 within 15%; the cascades' within a factor of 1.5",
-       q45, Needs::nothing, warps},
+       q45},
       {"Q46", "S4 fig. 52, 53", "quality follows map size over the tangent of the cone",
        "error of water-tower stays within 10% where both grow 3 times; grows by more where only "
        "the "
@@ -289,8 +285,7 @@ std::vector<Claim> layout_claims() {
        q46},
       {"Q47", "S4 4.2.5, fig. 26, 27",
        "without a virtual camera perspective maps miss casters behind the camera",
-       "pixels inside their shadow that are lost: none with it; over half without", q47,
-       Needs::nothing, perspective},
+       "pixels inside their shadow that are lost: none with it; over half without", q47},
   };
 }
 

@@ -37,12 +37,6 @@ Judged judge(const Claim& claim, Laboratory& lab) {
     judged.verdict = Verdict::needs_people;
     return judged;
   }
-  for (const std::string& layout : claim.layouts)
-    if (!has_layout(layout)) {
-      judged.verdict = Verdict::needs_layout;
-      judged.outcome.note += (judged.outcome.note.empty() ? "missing: " : ", ") + layout;
-    }
-  if (judged.verdict == Verdict::needs_layout || claim.measure == nullptr) return judged;
   try {
     judged.outcome = claim.measure(lab);
   } catch (const Error& error) {
@@ -98,22 +92,10 @@ const char* name_of(Verdict verdict) {
       return "needs a GPU";
     case Verdict::needs_people:
       return "needs people";
-    case Verdict::needs_layout:
-      return "needs the layout";
     case Verdict::not_measured:
       break;
   }
   return "not measured";
-}
-
-bool has_layout(const std::string& layout) {
-  for (const TechniqueDescription& technique : techniques::all())
-    for (const Parameter& parameter : technique.parameters)
-      if (parameter.name == "layout" &&
-          std::find(parameter.choices.begin(), parameter.choices.end(), layout) !=
-              parameter.choices.end())
-        return true;
-  return false;
 }
 
 Verdict verdict_of(const std::vector<bool>& parts) {

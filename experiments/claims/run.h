@@ -26,9 +26,6 @@ struct Judged {
   Verdict verdict = Verdict::not_measured;
 };
 
-/// Whether a technique's parameter `layout` takes that value.
-bool has_layout(const std::string& layout);
-
 /// The verdict on parts that hold or do not: some of them is in part.
 Verdict verdict_of(const std::vector<bool>& parts);
 

@@ -230,32 +230,22 @@ Outcome c29(Laboratory& lab) {
 }  // namespace
 
 std::vector<Claim> tile_cost_claims() {
-  const std::vector<std::string> tiles{"iasm"}, both{"iasm", "cascaded"};
-  const std::vector<std::string> late{"iasm", "iasm-delayed", "cascaded"};
   return {
       {"C09", "S1 table 4.1", "IASM is cheaper than CSM on trees, dearer on one mesh",
-       "maps' passes over CSM's below 1 on trees (0.85); over 2 on village (5.2)", c09, Needs::gpu,
-       both},
-      {"C10",
-       "S1 table 4.1",
-       "delayed read-back removes most of the stall",
-       "what the frame takes beyond its passes, below half, on trees; on village",
-       c10,
-       Needs::gpu,
-       {"iasm", "iasm-delayed"}},
+       "maps' passes over CSM's below 1 on trees (0.85); over 2 on village (5.2)", c09, Needs::gpu},
+      {"C10", "S1 table 4.1", "delayed read-back removes most of the stall",
+       "what the frame takes beyond its passes, below half, on trees; on village", c10, Needs::gpu},
       {"C15", "S1 table 4.1",
        "delayed IASM costs 1.05 of CSM on trees, 2.9 on the mesh; IASM that waits never wins",
-       "ratio of frames within 15%, trees; that of IASM over 1; village; over 1", c15, Needs::gpu,
-       late},
+       "ratio of frames within 15%, trees; that of IASM over 1; village; over 1", c15, Needs::gpu},
       {"C16", "S1 table 4.1", "on one mesh IASM draws 16/3 of CSM's vertices",
-       "vertices counted, exactly", c16, Needs::nothing, both},
+       "vertices counted, exactly", c16},
       {"C17", "S1 4.3", "bounding spheres draw tiles that boxes leave empty",
        "casters but the ground drawn in every tile: spheres no fewer than boxes, these no fewer "
        "than those that "
        "reach into it; some tile draws by spheres alone",
-       c17, Needs::nothing, tiles},
-      {"C29", "S1 table 4.1", "forward IASM reads back less than deferred", "bytes read back", c29,
-       Needs::nothing, tiles},
+       c17},
+      {"C29", "S1 table 4.1", "forward IASM reads back less than deferred", "bytes read back", c29},
   };
 }
 

@@ -185,15 +185,13 @@ Outcome q37(Laboratory& lab) {
 }  // namespace
 
 std::vector<Claim> tile_claims() {
-  const std::vector<std::string> tiles{"iasm"}, both{"iasm", "cascaded"};
   return {
       {"Q22", "S1 4.2", "IASM is close to CSM in 6,860,800 against 12,582,912 bytes",
-       "on trees its error is below 1.25 times CSM's; bytes exactly these", q22, Needs::nothing,
-       both},
+       "on trees its error is below 1.25 times CSM's; bytes exactly these", q22},
       {"Q23", "S1 fig. 4.4", "IASM shows borders of tiles near the camera, CSM none",
        "over a quarter turn of the camera, nearer half of the picture: worst over median error of "
        "IASM over 1.25; of CSM below 1.25; IASM's worst within 15 degrees of 45",
-       q23, Needs::nothing, both},
+       q23},
       {"Q37", "S0 2.2.3",
        "near at the nearest place seen, casters clamped onto it, beats near at the nearest caster",
        "mean over the survey's scenes, hard lights: less false_shadow at 16 bits of 1/z; less "
@@ -202,11 +200,11 @@ std::vector<Claim> tile_claims() {
       {"Q44", "S1 5", "freely chosen sizes of tiles bring acne and flicker",
        "sizes in proportion to importance against the set: more points change as the camera moves; "
        "more false_shadow",
-       q44, Needs::nothing, tiles},
+       q44},
       {"Q48", "S1 fig. 4.5", "tight ranges of tiles beat CSM close to the camera",
        "error near the camera at 16 bits, on trees and on village each: ranges of what is seen "
        "below CSM's; these and those of casters below one range's; ESM below ESM on CSM",
-       q48, Needs::nothing, both},
+       q48},
   };
 }
 

@@ -5,7 +5,7 @@ namespace penumbra::experiments::claims {
 namespace {
 
 Claim of_people(const char* id, const char* source, const char* statement, const char* rule) {
-  return {id, source, statement, rule, nullptr, Needs::people, {}};
+  return {id, source, statement, rule, nullptr, Needs::people};
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ TEST(Seams, errors_at_borders_of_views_are_those_beside_them) {
   const Scene scene = beams();
   const ImageF truth = HardTruth(scene).visibility("", picture, picture);
   std::size_t layouts_with_borders = 0;
-  for (const std::string& layout : sun_layouts())
+  for (const std::string& layout : sun_layouts()) {
+    double hard = 0.0;
     for (const char* technique : {"shadow-map", "pcf-bilinear-3x3", "vsm", "evsm"}) {
       if (!draws_sun(technique, layout)) continue;
       SCOPED_TRACE(technique + (" on " + layout));
@@ -92,8 +93,13 @@ TEST(Seams, errors_at_borders_of_views_are_those_beside_them) {
       if (at_count < 100.0) continue;  // one view
       ++layouts_with_borders;
       EXPECT_GT(beside / beside_count, 1e-4) << "nothing to compare with";
-      EXPECT_LT(std::sqrt(at / at_count), 1.5 * std::sqrt(beside / beside_count));
+      if (hard == 0.0) hard = std::sqrt(beside / beside_count);
+      // Tiles mix nothing at borders: a filter that is better than comparisons beside them need not be
+      // there.
+      const double elsewhere = std::max(std::sqrt(beside / beside_count), hard);
+      EXPECT_LT(std::sqrt(at / at_count), 1.5 * elsewhere);
     }
+  }
   EXPECT_GE(layouts_with_borders, 4u);
 }
 
