@@ -94,8 +94,8 @@ TEST(Seams, errors_at_borders_of_views_are_those_beside_them) {
       ++layouts_with_borders;
       EXPECT_GT(beside / beside_count, 1e-4) << "nothing to compare with";
       if (hard == 0.0) hard = std::sqrt(beside / beside_count);
-      // Tiles mix nothing at borders: a filter that is better than comparisons beside them need not be
-      // there.
+      // Tiles mix nothing at borders: a filter that is better than comparisons beside them need not
+      // be there.
       const double elsewhere = std::max(std::sqrt(beside / beside_count), hard);
       EXPECT_LT(std::sqrt(at / at_count), 1.5 * elsewhere);
     }
