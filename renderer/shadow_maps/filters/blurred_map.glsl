@@ -96,7 +96,7 @@ float read_logarithms(MapPoint point) {
   return greatest + log(sum);
 }
 
-/// All tiles side by side, as they stand in the buffer.
+/// All tiles side by side, as the buffer holds them.
 vec4 texel_in_picture(vec2 picture) {
   MapPoint point;
   point.view = square_at(picture, tiles_a_side);
