@@ -1,6 +1,7 @@
 #include "server/jobs/worker.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -120,7 +121,11 @@ Message answer(Renderer& renderer, Message& message, const WorkerOptions& option
 
   MessageReader reader(STDIN_FILENO);
   Message message;
-  while (reader.read(message, steady_clock::time_point::max()) == Exchange::message) {
+  while (true) {
+    // What a picture took goes back to the system: the next may be long in coming.
+    message = {};
+    ::malloc_trim(0);
+    if (reader.read(message, steady_clock::time_point::max()) != Exchange::message) break;
     try {
       const Message reply = answer(*renderer, message, options, channel);
       write_message(channel, reply);
