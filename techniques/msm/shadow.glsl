@@ -43,7 +43,7 @@ float least_share_before(vec4 m, float z) {
 // that is seen from its middle may hide 5/18 before it.
 float before_plane(PlaneScatter scatter) {
   if (scatter.variance <= 0.0) return 0.0;
-  float half_sum = 0.5 * scatter.third / scatter.variance;
+  float half_sum = 0.5 * scatter.third / scatter.variance / inverse_size();
   return sqrt(half_sum * half_sum + scatter.variance) - half_sum;
 }
 

@@ -145,7 +145,7 @@ float read_logarithms(MapPoint point) {
 /// How the depth of the receiver's own plane scatters along the axis within what the pixel reads.
 struct PlaneScatter {
   float variance;  // m^2
-  float third;     // central moment, m^3
+  float third;     // central moment, m^2 times units near the scene's size: m^3 may leave floats
   float most;      // m^2: the variance of a bell that is no narrower, wherever texels are mixed
 };
 
@@ -175,7 +175,7 @@ PlaneScatter scatter_of_plane(ShadowQuery query, MapPoint point) {
                       scatter_of_level(point.texel[side], lower + 1.0), level - lower);
     float squared = slope[side] * slope[side];
     scatter.variance += squared * (blur_variance + texels.x);
-    scatter.third += squared * slope[side] * texels.y;
+    scatter.third += squared * (inverse_size() * slope[side]) * texels.y;
     scatter.most += squared * (blur_variance + texels.z);
   }
   // The row of probes of an anisotropic read.
