@@ -248,14 +248,14 @@ void main() {
 #endif
   vec4 position = texelFetch(geometry_position, texel, 0);
   uvec4 words = texelFetch(geometry_words, texel, 0);
-  vec3 normal = unpack_unit_vector(words.y);
+  vec3 normal = geometric_normal_of(position, words);
   float reach = length(position.xyz) + length(position.xyz - frame.camera_position.xyz);
   vec3 origin = position.xyz + shaft_data.box_high.w * reach * normal;
   bool unread = !inside || position.w == 0.0 || is_outside_light(position.xyz, shaft_data.whole_low.w);
 #ifdef FIND_CANDIDATES
   Shaft shaft = make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w);
   // What the shading normal is turned from is not lit, whatever the facet sees.
-  bool shaded = facing(shaft, position.xyz, unpack_unit_vector(words.x)) != dark;
+  bool shaded = facing(shaft, position.xyz, shading_normal_of(position, words)) != dark;
   uint kind = find_candidates(texel, shaft, unread || !shaded ? dark : facing(shaft, position.xyz, normal));
   if (inside) imageStore(occlusion_mask, texel, uvec4(kind == fully_lit ? 0u : all_hidden));
   if (work.last != 0u) list_sample(texel, kind);

@@ -27,6 +27,9 @@ vec3 decoded(vec3 linear_color) {
 #endif
 }
 
+// Of interpolated positions, relative: several units in their last place.
+const float position_rounding = 4.8e-7;
+
 void main() {
   MaterialData material = materials[draw.material];
   vec4 color = material.base_color * vertex_color;
@@ -42,13 +45,19 @@ void main() {
   // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it
   // in clipped triangles. Both normals look towards the viewer.
   vec3 right = inverse_size() * dFdx(world_position), down = inverse_size() * dFdy(world_position);
-  vec3 facet = normalize(cross(right, down));
+  vec3 across = cross(right, down);
+  vec3 facet = normalize(across);
   vec3 to_camera = frame.camera_position.w > 0.5 ? frame.camera_position.xyz - world_position
                                                  : -frame.camera_direction.xyz;
   if (dot(facet, to_camera) < 0.0) facet = -facet;
   vec3 normal = normalize(world_normal);
   if (!gl_FrontFacing) normal = -normal;
   if (dot(normal, facet) < 0.0) normal = facet;
+  // Differences of positions lose what a flat facet's normal, given with its corners, still has.
+  float doubt = position_rounding * inverse_size() * length(world_position) *
+                max(length(right), length(down)) / max(length(across), 1e-30);
+  float bend = max(length(dFdx(world_normal)), length(dFdy(world_normal)));
+  if (max(length(normal - facet), bend) < doubt) facet = normal;
 
   Surface surface;
   surface.position = world_position;
@@ -57,7 +66,6 @@ void main() {
   surface.base_color = decoded(color.rgb);
   surface.specular = material.surface.x;
   surface.shininess = material.surface.y;
-  out_position = vec4(world_position, 1.0);
-  out_words = pack_surface(surface);
+  pack_surface(surface, out_position, out_words);
   out_radiance = vec4(frame.ambient.rgb * surface.base_color + material.emissive.rgb, 1.0);
 }

@@ -30,7 +30,7 @@ void main() {
   vec4 surface = texelFetch(geometry_position, texel, 0);
   if (surface.w == 0.0) discard;
   if (abs(dot(receiver.plane.xyz, surface.xyz) - receiver.plane.w) > receiver.heights.z) discard;
-  vec3 normal = unpack_unit_vector(texelFetch(geometry_words, texel, 0).y);
+  vec3 normal = geometric_normal_of(surface, texelFetch(geometry_words, texel, 0));
   if (dot(normal, receiver.plane.xyz) < 0.99) discard;
   for (int i = 0; i < int(receiver.heights.w); ++i)
     if (dot(sides[i].xyz, surface.xyz) < sides[i].w) discard;
