@@ -64,7 +64,9 @@ class EmbreeProgram {
   EmbreeProgram(const EmbreeProgram&) = delete;
   EmbreeProgram& operator=(const EmbreeProgram&) = delete;
 
-  std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size) const;
+  /// What the camera sees, above its facets by what rounding may have moved it.
+  std::vector<Receiver> receivers(const GpuScene& gpu, const CameraMatrices& camera,
+                                  std::uint32_t size) const;
   /// Rays that reach one of `points`, of all from `receivers`, on all cores; `w` of the points: 1
   /// for places, 0 for directions.
   std::uint64_t count_lit(const std::vector<Receiver>& receivers, const std::vector<Packet>& points,
@@ -98,7 +100,7 @@ RTCScene EmbreeProgram::add(const GpuScene& scene, bool casters_only) {
   return made;
 }
 
-std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera,
+std::vector<Receiver> EmbreeProgram::receivers(const GpuScene& gpu, const CameraMatrices& camera,
                                                std::uint32_t size) const {
   std::vector<Receiver> list;
   for (std::uint32_t y = 0; y < size; ++y)
@@ -124,7 +126,8 @@ std::vector<Receiver> EmbreeProgram::receivers(const CameraMatrices& camera,
       glm::vec3 normal = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
       if (glm::dot(normal, direction) > 0.0f) normal = -normal;
       const glm::vec3 position = start + query.ray.tfar * direction;
-      list.push_back({position + reference::offset_of(position, camera.position) * normal, normal});
+      list.push_back(
+          {position + reference::rounding_of(gpu, position, camera.position) * normal, normal});
     }
   return list;
 }
@@ -195,7 +198,7 @@ void run(const std::string& name, std::uint32_t size, std::uint32_t samples, int
                      scene_frame(*scene, scene->cameras.front()));
   const EmbreeProgram embree(gpu);
   const CameraMatrices camera = camera_matrices(scene->cameras.front(), gpu.origin(), 1.0, 1.0);
-  const std::vector<Receiver> receivers = embree.receivers(camera, size);
+  const std::vector<Receiver> receivers = embree.receivers(gpu, camera, size);
 
   Renderer renderer({"", false});
   const auto render = [&](const char* mode, std::uint32_t points) {

@@ -1,7 +1,6 @@
 #include "renderer/frame/frame_run.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "renderer/error.h"
 #include "renderer/frame/common_parameters.h"
@@ -18,21 +17,10 @@ using vulkan::Sampling;
 CameraMatrices picture_matrices(const RenderRequest& request, const GpuScene& scene,
                                 const Camera& camera) {
   const double aspect = static_cast<double>(request.width) / request.height;
-  double far = 1.0;
-  if (camera.projection == Projection::orthographic) {
-    std::vector<Bounds> boxes;
-    for (const DrawRange& range : scene.ranges())
-      if (range.visible) boxes.push_back(range.box());
-    far = seen_depth(camera, scene.origin(), aspect, boxes);
-  }
-  return camera_matrices(camera, scene.origin(), aspect, far);
-}
-
-/// A power of two, so that lengths are scaled without rounding; 1/m.
-float inverse_size(const GpuScene& scene) {
-  const glm::vec3 sides = scene.high() - scene.low();
-  const float size = std::max({sides.x, sides.y, sides.z});
-  return size > 0.0f ? std::exp2(-std::floor(std::log2(size))) : 1.0f;
+  std::vector<Bounds> boxes;
+  for (const DrawRange& range : scene.ranges())
+    if (range.visible) boxes.push_back(range.box());
+  return matrices_seeing(camera, scene.origin(), aspect, boxes);
 }
 
 FrameSetup make_setup(Renderer::State& state, const RenderRequest& request,
@@ -151,8 +139,8 @@ vulkan::Bindings FrameRun::frame_bindings() {
   frame.world_from_clip = m.world_from_clip;
   frame.camera_position =
       glm::vec4(m.position, setup_.camera.projection == Projection::perspective ? 1.0 : 0.0);
-  frame.camera_direction = glm::vec4(m.direction, setup_.camera.near_plane);
-  frame.ambient = glm::vec4(scene.ambient, inverse_size(setup_.scene));
+  frame.camera_direction = glm::vec4(m.direction, m.near_plane);
+  frame.ambient = glm::vec4(scene.ambient, setup_.scene.inverse_size());
   frame.background_low = glm::vec4(scene.background_low, 0.0f);
   frame.background_high = glm::vec4(scene.background_high, 0.0f);
   frame.size = glm::vec4(setup_.width(), setup_.height(), setup_.side, exposure_factor(request_));

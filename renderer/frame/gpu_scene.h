@@ -67,6 +67,9 @@ class GpuScene {
   /// Box around the whole scene, used or not, as far as the frame reaches; world.
   glm::vec3 low() const { return low_; }
   glm::vec3 high() const { return high_; }
+  /// A power of two near one over the scene's size, 1/m: scales lengths without rounding, so that
+  /// products of them stay within floats.
+  float inverse_size() const;
   /// Whether parts of the scene lie beyond the frame's reach.
   bool is_far() const { return std::isfinite(frame_.reach); }
   /// The part of a box in the scene's coordinates that lies within reach, in world space; may be

@@ -73,6 +73,12 @@ Bounds GpuScene::near_part(const Bounds& box) const {
   return part.low.y <= part.high.y && part.low.z <= part.high.z ? part : Bounds{};
 }
 
+float GpuScene::inverse_size() const {
+  const glm::vec3 sides = high_ - low_;
+  const float size = std::max({sides.x, sides.y, sides.z});
+  return size > 0.0f ? std::exp2(-std::floor(std::log2(size))) : 1.0f;
+}
+
 void GpuScene::find_coarse_coordinates() {
   if (is_far()) {
     const double size = 2.0 * world_bounds(*scene_).radius();

@@ -47,7 +47,8 @@ class Gatherer {
     for (std::uint32_t i = 0; i + 2 < range.index_count; i += 3) {
       const std::uint32_t* corners = &scene_.indices()[range.first_index + i];
       Triangle triangle;
-      for (std::size_t k = 0; k < 3; ++k) triangle[k] = scene_.positions()[corners[k]];
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle[k] = scene_.inverse_size() * scene_.positions()[corners[k]];
       TriangleTexels out{};
       for (std::size_t k = 0; k < 3; ++k) out.corners[k] = {triangle[k], no_hole};
       if (range.masked) {
@@ -99,7 +100,8 @@ class Gatherer {
 
 /// Boxes grow by what float arithmetic may lose between them and a receiver in the scene.
 void widen(std::vector<Node>& nodes, const GpuScene& scene) {
-  const glm::vec3 reach = glm::max(glm::abs(scene.low()), glm::abs(scene.high()));
+  const glm::vec3 reach =
+      scene.inverse_size() * glm::max(glm::abs(scene.low()), glm::abs(scene.high()));
   for (Node& node : nodes) {
     const glm::vec3 own = glm::max(reach, glm::max(glm::abs(node.low), glm::abs(node.high)));
     const float margin = 1e-6f * std::max({own.x, own.y, own.z});

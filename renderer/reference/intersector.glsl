@@ -1,6 +1,7 @@
 // Exact visibility of many light points at once. A receiver and the box around the points span a shaft;
 // the walk finds triangles that reach into it, and each is tested against all points by four planes:
-// three through the receiver and an edge, and the triangle's own.
+// three through the receiver and an edge, and the triangle's own. Lengths are in units near the scene's
+// size: planes are products of three.
 #ifndef PENUMBRA_INTERSECTOR_GLSL
 #define PENUMBRA_INTERSECTOR_GLSL
 
@@ -17,11 +18,13 @@ struct Shaft {
   vec3 inverse_low, inverse_high;
   bvec3 low_is_upper, high_is_lower;  // which way the bounds face
   float end;                          // largest t
+  float rounding;                     // how far the origin may lie from its surface
 };
 
-Shaft make_shaft(vec3 origin, vec3 low, vec3 high, float finite) {
+Shaft make_shaft(vec3 origin, vec3 low, vec3 high, float finite, float rounding) {
   Shaft s;
   s.origin = origin;
+  s.rounding = rounding;
   s.finite = finite;
   s.middle = 0.5 * low + 0.5 * high;
   s.half_size = 0.5 * high - 0.5 * low;
@@ -81,7 +84,7 @@ TrianglePlanes planes_of(Shaft s, uint triangle) {
   float side = dot(normal, a - s.origin);
   // A triangle seen edge-on, or without area, hides nothing: its sign is 0 and so are its planes. Such
   // is the receiver's own, and its neighbours in the same plane.
-  float doubt = in_plane * longest(b - a) * longest(c - a) * longest(a - s.origin);
+  float doubt = in_plane * longest(b - a) * longest(c - a) * longest(a - s.origin) + s.rounding * length(normal);
   float sign_of_side = abs(side) <= doubt ? 0.0 : sign(side);
   TrianglePlanes t;
   t.edges[0] = sign_of_side * edge_plane(s, b, c);

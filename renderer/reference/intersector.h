@@ -6,6 +6,7 @@
 namespace penumbra::reference {
 
 /// The casters of a scene on the device, ready to be walked: built once per scene and kept with it.
+/// Their lengths are times GpuScene::inverse_size.
 class Intersector {
  public:
   static constexpr const char* requirement = acceleration_structure_name;

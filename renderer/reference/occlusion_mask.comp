@@ -19,10 +19,10 @@ layout(r32ui) uniform uimage2DArray candidates;  // layer 0 the first node, laye
 const uint all_hidden = 0xffffffffu;
 
 // Points behind the facet's plane are hidden by the receiver itself, whatever stands around it.
-uint hidden_by_receiver(vec3 position, vec3 normal) {
-  float limit = shaft_data.box_low.w * dot(normal, position);
+uint hidden_by_receiver(vec3 place, vec3 normal) {
+  vec3 from = shaft_data.box_low.w * place;
   uint mask = 0u;
-#define BEHIND(i) mask |= dot(normal, light_points[i].xyz) <= limit ? 1u << (i) : 0u;
+#define BEHIND(i) mask |= dot(normal, light_points[i].xyz - from) <= 0.0 ? 1u << (i) : 0u;
   ALL_POINTS(BEHIND)
 #undef BEHIND
   return mask;
@@ -148,8 +148,8 @@ uint find_candidates(ivec2 texel, Shaft shaft, uint kind) {
 }
 
 // What the receiver's own facet says of the whole light.
-uint facing(Shaft shaft, vec3 position, vec3 normal) {
-  vec2 range = range_of(shaft, vec4(normal, -shaft.finite * dot(normal, position)));
+uint facing(Shaft shaft, vec3 normal) {
+  vec2 range = range_of(shaft, vec4(normal, -shaft.finite * dot(normal, shaft.origin)));
   return range.y < 0.0 ? dark : range.x > 0.0 ? fully_lit : partly_lit;
 }
 #else
@@ -249,21 +249,27 @@ void main() {
   vec4 position = texelFetch(geometry_position, texel, 0);
   uvec4 words = texelFetch(geometry_words, texel, 0);
   vec3 normal = geometric_normal_of(position, words);
-  float reach = length(position.xyz) + length(position.xyz - frame.camera_position.xyz);
-  vec3 origin = position.xyz + shaft_data.box_high.w * reach * normal;
+  // In the hierarchy's units, where no scene is larger than 2.
+  float scale = shaft_data.whole_high.w;
+  vec3 origin = scale * position.xyz;
+  float reach = length(origin) + min(length(origin - scale * frame.camera_position.xyz), 2.0);
+  float rounding = shaft_data.box_high.w * reach;
   bool unread = !inside || position.w == 0.0 || is_outside_light(position.xyz, shaft_data.whole_low.w);
+#if defined(FIND_CANDIDATES) || defined(LIST_OCCLUDERS)
+  Shaft shaft = make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w, rounding);
+#else
+  Shaft shaft = make_shaft(origin, shaft_data.box_low.xyz, shaft_data.box_high.xyz, shaft_data.box_low.w, rounding);
+#endif
 #ifdef FIND_CANDIDATES
-  Shaft shaft = make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w);
   // What the shading normal is turned from is not lit, whatever the facet sees.
-  bool shaded = facing(shaft, position.xyz, shading_normal_of(position, words)) != dark;
-  uint kind = find_candidates(texel, shaft, unread || !shaded ? dark : facing(shaft, position.xyz, normal));
+  bool shaded = facing(shaft, shading_normal_of(position, words)) != dark;
+  uint kind = find_candidates(texel, shaft, unread || !shaded ? dark : facing(shaft, normal));
   if (inside) imageStore(occlusion_mask, texel, uvec4(kind == fully_lit ? 0u : all_hidden));
   if (work.last != 0u) list_sample(texel, kind);
 #elif defined(LIST_OCCLUDERS)
-  list_occluders(texel, make_shaft(origin, shaft_data.whole_low.xyz, shaft_data.whole_high.xyz, shaft_data.box_low.w));
+  list_occluders(texel, shaft);
 #else
-  Shaft shaft = make_shaft(origin, shaft_data.box_low.xyz, shaft_data.box_high.xyz, shaft_data.box_low.w);
-  uint mask = shaft_data.unused.x | hidden_by_receiver(position.xyz, normal);
+  uint mask = shaft_data.unused.x | hidden_by_receiver(origin, normal);
   find_mask(texel, shaft, unread ? all_hidden : mask);
 #endif
 }

@@ -30,12 +30,17 @@ ExtentBox extent_box(const WorldLight& light) {
   return {middle - reach, middle + reach};
 }
 
+/// Of the hierarchy's units, in a metre; directions are as long as they are.
+double unit_of_points(const PrepareContext& context) {
+  return glm::mix(1.0, double{context.scene.inverse_size()}, context.light.center.w);
+}
+
 /// Widens a box by what rounding of points and receivers may do: that grows with their coordinates,
 /// or is that of unit directions at infinity, where `w` of the light's centre is 0.
 void widen(ExtentBox& box, double w, const GpuScene& scene) {
-  const glm::dvec3 far =
-      glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
-               glm::dvec3(glm::max(glm::abs(scene.low()), glm::abs(scene.high()))));
+  const glm::dvec3 reached(glm::max(glm::abs(scene.low()), glm::abs(scene.high())));
+  const glm::dvec3 far = glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
+                                  double{scene.inverse_size()} * reached);
   const double reach = glm::mix(1.0, std::max({far.x, far.y, far.z}), w);
   box.low -= 1e-6 * reach;
   box.high += 1e-6 * reach;
@@ -46,33 +51,40 @@ void widen(ExtentBox& box, double w, const GpuScene& scene) {
 /// 1218 by 8 pixels).
 constexpr float usual_ratio = 16.0f;
 
-/// Distance that receivers are moved along their normal, per metre.
-float offset_in(const GeometryBuffer& picture) {
+/// How far receivers may lie from their surface, as a share of their places.
+float rounding_in(const GeometryBuffer& picture) {
   const auto [low, high] = std::minmax(picture.width, picture.height);
   const float ratio = static_cast<float>(high) / static_cast<float>(low);
-  return receiver_offset * std::max(1.0f, ratio / usual_ratio);
+  return receiver_rounding * std::max(1.0f, ratio / usual_ratio);
 }
 
-std::span<const glm::vec4> points_of(const PrepareContext& context, std::uint32_t set) {
-  return context.points.subspan(std::size_t{set} * batch_size, batch_size);
+/// Places of the light's points in the hierarchy's units, or directions as they are.
+std::vector<glm::vec4> points_of(const PrepareContext& context, std::uint32_t set) {
+  const auto points = context.points.subspan(std::size_t{set} * batch_size, batch_size);
+  const double scale = unit_of_points(context);
+  std::vector<glm::vec4> scaled;
+  for (const glm::vec4& point : points) scaled.emplace_back(scale * glm::dvec3(point), point.w);
+  return scaled;
 }
 
 /// For the points of one sample of a pixel.
 shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   shader::ShaftData data{};
-  const auto points = points_of(context, set);
+  const std::vector<glm::vec4> points = points_of(context, set);
   ExtentBox batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
   for (std::uint32_t i = 0; i < context.points_in_batch; ++i) {
     batch.low = glm::min(batch.low, glm::dvec3(points[i]));
     batch.high = glm::max(batch.high, glm::dvec3(points[i]));
   }
   ExtentBox whole = extent_box(context.light);
+  whole.low *= unit_of_points(context);
+  whole.high *= unit_of_points(context);
   widen(batch, context.light.center.w, context.scene);
   widen(whole, context.light.center.w, context.scene);
   data.box_low = glm::vec4(batch.low, context.light.center.w);
-  data.box_high = glm::vec4(batch.high, offset_in(context.geometry));
+  data.box_high = glm::vec4(batch.high, rounding_in(context.geometry));
   data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
-  data.whole_high = glm::vec4(whole.high, 0.0);
+  data.whole_high = glm::vec4(whole.high, context.scene.inverse_size());
   data.unused.x = context.points_in_batch < batch_size ? ~0u << context.points_in_batch : 0u;
   return data;
 }
@@ -94,8 +106,11 @@ std::uint32_t set_count(const PrepareContext& context) {
 
 }  // namespace
 
-float offset_of(const glm::vec3& position, const glm::vec3& camera_position) {
-  return receiver_offset * (glm::length(position) + glm::length(position - camera_position));
+float rounding_of(const GpuScene& scene, const glm::vec3& position,
+                  const glm::vec3& camera_position) {
+  const float within =
+      std::min(glm::length(position - camera_position), 2.0f / scene.inverse_size());
+  return receiver_rounding * (glm::length(position) + within);
 }
 
 void OcclusionMask::trace(PrepareContext& context) {
@@ -228,7 +243,8 @@ bool OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& na
   context.pass(name, [&](vulkan::Commands& commands) {
     for (std::uint32_t set = 0; set < set_count(context); ++set) {
       bindings.buffer("ShaftBlock", context.constants.push(shaft_data(context, set)));
-      bindings.buffer("LightPointBlock", context.constants.push_array(points_of(context, set)));
+      bindings.buffer("LightPointBlock", context.constants.push_array(
+                                             std::span<const glm::vec4>(points_of(context, set))));
       commands.bind(pipeline, bindings);
       work.set = set;
       walk(context, commands, ranges == nullptr ? nullptr : &(*ranges)[set], work);

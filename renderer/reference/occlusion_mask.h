@@ -6,17 +6,17 @@
 
 namespace penumbra::reference {
 
-/// Distance of a receiver from its facet, per metre of its coordinates and of its distance from the
-/// camera: what rounding of interpolated positions moves them by, several times over. Every ray
-/// passes what it should touch by as much, so it is not made of the scene's size.
-constexpr float receiver_offset = 1e-6f;
+/// How far a receiver may lie from its facet, per metre of its coordinates and of its distance from
+/// the camera, where that is within the scene: what rounding of interpolated positions moves them
+/// by, several times over. Triangles whose planes are that near hide nothing from it.
+constexpr float receiver_rounding = 1e-6f;
 
 /// That distance, m, of a point of the renderer's world space. As occlusion_mask.comp has it.
-float offset_of(const glm::vec3& position, const glm::vec3& camera_position);
+float rounding_of(const GpuScene& scene, const glm::vec3& position,
+                  const glm::vec3& camera_position);
 
 /// For every sample of the frame and every light point of a batch: is the segment between them (or
 /// the ray towards a directional light) cut by a caster? One bit each; exact up to float rounding.
-/// Receivers start offset_of their place above their facet.
 class OcclusionMask {
  public:
   /// Nodes that one dispatch walks at first: below the 65,535 rounds after which some drivers end

@@ -110,15 +110,15 @@ struct TileSums {
                // z 0 where nothing is seen that faces the light
 };
 
-/// Boxes that hold the light points of one batch and sample of a pixel: positions, or directions
-/// that need not be unit.
+/// Boxes that hold the light points of one batch and sample of a pixel: positions in the
+/// hierarchy's units, or directions that need not be unit.
 struct ShaftData {
-  vec4 box_low;    // box of the batch; w 1 for positions, 0 for directions
-  vec4 box_high;   // w distance that receivers are moved along their normal, per metre
-  vec4 whole_low;  // box of the whole extent; w distance of its farthest point from the centre,
-                   // m, or a tangent for directions
-  vec4 whole_high;
-  uvec4 unused;  // x bits of points that the batch does not have
+  vec4 box_low;     // box of the batch; w 1 for positions, 0 for directions
+  vec4 box_high;    // w how far receivers may lie from their surface, as a share of their places
+  vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre,
+                    // m, or a tangent for directions
+  vec4 whole_high;  // w units of the hierarchy in a metre
+  uvec4 unused;     // x bits of points that the batch does not have
 };
 
 #ifdef __cplusplus

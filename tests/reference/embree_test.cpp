@@ -40,9 +40,9 @@ Verdict compare(const std::shared_ptr<const Scene>& scene, std::uint32_t count) 
     for (std::size_t r = 0; r < receivers.size(); ++r) {
       if (!receivers[r].surface || !inside_light(world, receivers[r].position)) continue;
       for (std::size_t p = 0; p < points.size(); ++p) {
-        const float offset = reference::offset_of(receivers[r].position, camera.position);
+        const float rounding = reference::rounding_of(gpu, receivers[r].position, camera.position);
         const bool truth =
-            embree.hidden(receivers[r], offset, glm::vec4(glm::vec3(points[p]), finite));
+            embree.hidden(receivers[r], rounding, glm::vec4(glm::vec3(points[p]), finite));
         const bool found = (masks[p / 32][r] >> (p % 32) & 1u) != 0;
         ++verdict.rays;
         verdict.hidden += truth;

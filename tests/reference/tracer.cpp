@@ -42,6 +42,29 @@ RTCRay ray(const glm::vec3& origin, const glm::vec3& direction, float far) {
   return made;
 }
 
+/// A ray's own context: it leaves out what its receiver lies in.
+struct FromSurface {
+  RTCIntersectContext context;  ///< first, as Embree hands out pointers to it
+  double rounding;              ///< how far the receiver may be from a triangle that it lies in
+};
+
+/// Leaves out triangles whose planes are no farther from the ray's origin than rounding.
+void leave_own_plane(const RTCFilterFunctionNArguments* arguments) {
+  const auto* from = reinterpret_cast<const FromSurface*>(arguments->context);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const glm::dvec3 normal(RTCHitN_Ng_x(arguments->hit, arguments->N, i),
+                            RTCHitN_Ng_y(arguments->hit, arguments->N, i),
+                            RTCHitN_Ng_z(arguments->hit, arguments->N, i));
+    const glm::dvec3 along(RTCRayN_dir_x(arguments->ray, arguments->N, i),
+                           RTCRayN_dir_y(arguments->ray, arguments->N, i),
+                           RTCRayN_dir_z(arguments->ray, arguments->N, i));
+    const double met = RTCRayN_tfar(arguments->ray, arguments->N, i);
+    const double height = std::abs(met * glm::dot(normal, along)) / glm::length(normal);
+    if (height <= from->rounding) arguments->valid[i] = 0;
+  }
+}
+
 }  // namespace
 
 Embree::Embree(const GpuScene& scene)
@@ -60,7 +83,7 @@ RTCScene Embree::add(const GpuScene& scene, bool casters_only) {
       indices.insert(indices.end(), scene.indices().begin() + range.first_index,
                      scene.indices().begin() + range.first_index + range.index_count);
   RTCScene made = rtcNewScene(device_);
-  rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   const std::size_t vertices = scene.positions().size() * sizeof(glm::vec3);
   std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
@@ -103,15 +126,17 @@ std::vector<Receiver> Embree::receivers(const CameraMatrices& camera, std::uint3
   return list;
 }
 
-bool Embree::hidden(const Receiver& receiver, float offset, const glm::vec4& point) const {
-  const glm::vec3 origin = receiver.position + offset * receiver.normal;
+bool Embree::hidden(const Receiver& receiver, float rounding, const glm::vec4& point) const {
+  const glm::vec3 origin = receiver.position;
   const glm::vec3 direction = glm::vec3(point) - point.w * origin;
   if (glm::dot(receiver.normal, direction) <= 0.0f) return true;
   RTCRay query =
       ray(origin, direction, point.w > 0.5f ? 1.0f : std::numeric_limits<float>::infinity());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(casters_, &context, &query);
+  FromSurface from;
+  rtcInitIntersectContext(&from.context);
+  from.context.filter = leave_own_plane;
+  from.rounding = static_cast<double>(rounding);
+  rtcOccluded1(casters_, &from.context, &query);
   return query.tfar < 0.0f;
 }
 

@@ -25,10 +25,10 @@ class Embree {
   /// What the camera sees, pixel after pixel; normals are towards it. The camera's near plane is
   /// that of the scene's first camera.
   std::vector<Receiver> receivers(const CameraMatrices& camera, std::uint32_t size) const;
-  /// Whether a caster stands between the receiver, moved by `offset` along its normal, and the
-  /// point (w of 1), or in the direction (w of 0). The receiver's own facet hides what is behind
-  /// it.
-  bool hidden(const Receiver& receiver, float offset, const glm::vec4& point) const;
+  /// Whether a caster stands between the receiver and the point (w of 1), or in the direction (w of
+  /// 0), triangles left out whose planes are within `rounding` of it, m. The receiver's own facet
+  /// hides what is behind it.
+  bool hidden(const Receiver& receiver, float rounding, const glm::vec4& point) const;
 
  private:
   RTCScene add(const GpuScene& scene, bool casters_only);

@@ -54,13 +54,13 @@ struct Estimate {
   double variance = 0.0;
 };
 
-Estimate embree_visibility(const Embree& embree, const Receiver& receiver, float offset,
+Estimate embree_visibility(const Embree& embree, const Receiver& receiver, float rounding,
                            const std::vector<glm::vec4>& points) {
   constexpr std::size_t scrambles = 16;
   std::array<double, scrambles> lit{};
   for (std::size_t i = 0; i < points.size(); ++i)
     lit[i % scrambles] +=
-        embree.hidden(receiver, offset, glm::vec4(glm::vec3(points[i]), 1.0f)) ? 0.0 : 1.0;
+        embree.hidden(receiver, rounding, glm::vec4(glm::vec3(points[i]), 1.0f)) ? 0.0 : 1.0;
   Estimate estimate;
   for (double& share : lit) {
     share *= static_cast<double>(scrambles) / static_cast<double>(points.size());
@@ -90,8 +90,8 @@ TEST_F(ReferenceUncertainty, PassesATestOfEveryPixelAgainstEmbreesOwnScrambles) 
   const double limit = boost::math::quantile(boost::math::students_t(15.0), 1.0 - 0.5 * alpha);
   for (std::size_t p = 0; p < receivers.size(); ++p) {
     if (!receivers[p].surface || ours.judged.pixels[p] < 1.0f) continue;
-    const float offset = reference::offset_of(receivers[p].position, camera.position);
-    const Estimate truth = embree_visibility(embree, receivers[p], offset, points);
+    const float rounding = reference::rounding_of(gpu, receivers[p].position, camera.position);
+    const Estimate truth = embree_visibility(embree, receivers[p], rounding, points);
     const double difference = static_cast<double>(ours.visibility.pixels[p]) - truth.mean;
     ++tested;
     if (truth.variance == 0.0) {
