@@ -76,7 +76,9 @@ PENUMBRA_CONSTANT int tile_sizes[tile_count] = {1024, 512, 512, 256, 128, 128, 1
 /// One view from the light. A point x of it lies at origin + s (forward + a right + b up) when
 /// perspective, origin + s forward + a right + b up when not, with a and b from -1 to 1 over the
 /// map (b downwards) and s the distance along `forward`; unless the map is warped, as `unwarp`
-/// tells.
+/// tells. From a light far away distances are floats too coarse for depth: there the origin is
+/// moved along `forward` to the scene, and distances and the range are counted from where it is
+/// then.
 struct MapView {
   mat4 clip_from_world;
   vec4 origin;     // xyz world, w 1 for perspective

@@ -154,31 +154,6 @@ VkFormat depth_format(const ParameterValues& parameters) {
   return compact ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
 }
 
-/// The range that parameters ask for in place of what was fitted.
-void set_given_range(shader::MapView& view, const ParameterValues& parameters) {
-  if (!parameters.contains("near")) return;
-  const auto given = [&](const char* name) {
-    const auto value = static_cast<float>(real_of(parameters, name));
-    if (real_of(parameters, name) > 0.0 && value < std::numeric_limits<float>::min())
-      throw bad_value(name, std::string(name) + " is smaller than a float can be");
-    return value;
-  };
-  const float given_near = given("near");
-  const float given_far = given("far");
-  float near = view.range.x;
-  float far = view.range.y;
-  // 1/z begins somewhere before 0, where that was not asked for.
-  if (choice_of(parameters, "depth") == "hyperbolic") near = std::max(near, 1e-4f * far);
-  if (given_near > 0.0f) near = given_near;
-  if (given_far > 0.0f) far = given_far;
-  if (near >= far)
-    throw bad_value(given_near > 0.0f ? "near" : "far",
-                    "the map's range must end behind where it begins, but near is " +
-                        to_text(double{near}) + " m and far " + to_text(double{far}) +
-                        " m (0 fits them to the scene)");
-  set_range(view, near, far);
-}
-
 }  // namespace
 
 bool keeps_image(const ParameterValues& parameters) {
@@ -243,6 +218,7 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
   const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
   for (shader::MapView& view : views) {
     set_given_range(view, parameters);
+    count_from_scene(view, context.scene, parameters);
     // Positions are floats: this much is lost on the way to a depth.
     const float rounding = std::ldexp(view.range.y, -21);
     view.range.w = static_cast<float>(real_of(parameters, "bias")) + slope_scale * rounding;

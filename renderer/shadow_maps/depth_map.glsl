@@ -106,9 +106,11 @@ MapPoint locate(ShadowQuery query, int view_index, float kernel_radius) {
                   vec2(dot(query.normal, view.right.xyz), dot(query.normal, view.up.xyz));
   float facing = dot(query.normal, view.forward.xyz);
   if (perspective) {
-    float height = dot(query.normal, position - view.origin.xyz);
-    point.plane_top = vec3(0.0, 0.0, height);
-    point.plane_bottom = vec3(gradient, height / point.distance);
+    // The light's height over the plane, and what the plane's distance is counted from.
+    float moved = view.right.w;
+    float height = dot(query.normal, position - view.origin.xyz) + moved * facing;
+    point.plane_bottom = vec3(gradient, height / from_light(view, point.distance));
+    point.plane_top = vec3(-moved * gradient, moved > 0.0 ? point.distance * point.plane_bottom.z : height);
   } else {
     point.plane_top = vec3(-gradient, facing * point.distance);
     point.plane_bottom = vec3(0.0, 0.0, facing);
@@ -126,7 +128,7 @@ float plane_distance(MapPoint point, vec2 offset) {
   float bottom = dot(point.plane_bottom, vec3(offset, 1.0));
   // A lit plane has a bottom below zero; where the ray misses it there is nothing to compare with.
   if (bottom >= 0.0) return point.distance;
-  // A plane seen edge-on is not followed to infinity: normals of 16 bits do not bear it below 0.02 degrees.
+  // A plane seen edge-on is not followed to infinity, but as far as light of 0.02 degrees needs.
   float steep = point.distance - 3000.0 * point.texel_width * length(offset);
   return clamp(top / bottom, max(steep, point.nearest), point.distance);
 }

@@ -39,7 +39,8 @@ ExtentOnMap extent_on_map(MapPoint point) {
 // light: divided by d, where a texel is one unit wide. Directional light: both without the division.
 float reach(MapPoint point, float blocker) {
   float gap = max(point.distance - blocker, 0.0);
-  return map.views[point.view].origin.w > 0.5 ? gap / (blocker * point.distance) : gap;
+  MapView view = map.views[point.view];
+  return view.origin.w > 0.5 ? gap / (from_light(view, blocker) * from_light(view, point.distance)) : gap;
 }
 
 float texels_of(ExtentOnMap extent, float reach) {

@@ -9,9 +9,12 @@ layout(std140) uniform MapBlock { MapData map; };
 /// Distance along a view's axis as an even depth.
 float even_depth_of(vec4 range, float distance) { return (distance - range.x) * range.z; }
 
+/// Distance from the light of what is at this one along a view's axis, m.
+float from_light(MapView view, float distance) { return view.right.w + distance; }
+
 /// World size of a texel of an unwarped view at this distance along its axis, m.
 float texel_size(MapView view, float distance) {
-  return view.forward.w * (view.origin.w > 0.5 ? distance : 1.0);
+  return view.forward.w * (view.origin.w > 0.5 ? from_light(view, distance) : 1.0);
 }
 
 /// How a view spreads its texels around a place. A step d, in texels, is a step of texels * d /

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/error.h"
 #include "renderer/scene/convex_clip.h"
 #include "renderer/scene/transforms.h"
+#include "renderer/shadow_maps/depth_map.h"
 
 namespace penumbra::shadow_maps {
 namespace {
@@ -175,6 +177,54 @@ Bounds bounds_along(const Bounds& box, const ViewAxes& axes) {
 
 void set_range(shader::MapView& view, float near, float far) {
   view.range = {near, far, 1.0f / (far - near), view.range.w};
+}
+
+namespace {
+bool is_hyperbolic(const ParameterValues& parameters) {
+  return parameters.contains("depth") && choice_of(parameters, "depth") == "hyperbolic";
+}
+}  // namespace
+
+void set_given_range(shader::MapView& view, const ParameterValues& parameters) {
+  if (!parameters.contains("near")) return;
+  const auto given = [&](const char* name) {
+    const auto value = static_cast<float>(real_of(parameters, name));
+    if (real_of(parameters, name) > 0.0 && value < std::numeric_limits<float>::min())
+      throw bad_value(name, std::string(name) + " is smaller than a float can be");
+    return value;
+  };
+  const float given_near = given("near");
+  const float given_far = given("far");
+  float near = view.range.x;
+  float far = view.range.y;
+  // 1/z begins somewhere before 0, where that was not asked for.
+  if (is_hyperbolic(parameters)) near = std::max(near, 1e-4f * far);
+  if (given_near > 0.0f) near = given_near;
+  if (given_far > 0.0f) far = given_far;
+  if (near >= far)
+    throw bad_value(given_near > 0.0f ? "near" : "far",
+                    "the map's range must end behind where it begins, but near is " +
+                        to_text(double{near}) + " m and far " + to_text(double{far}) +
+                        " m (0 fits them to the scene)");
+  set_range(view, near, far);
+}
+
+void count_from_scene(shader::MapView& view, const GpuScene& scene,
+                      const ParameterValues& parameters) {
+  // 1/z is counted from the light, and tiles find their ranges themselves.
+  if (is_hyperbolic(parameters) || !keeps_image(parameters)) return;
+  const double near{view.range.x}, far{view.range.y};
+  const double size = glm::length(glm::max(glm::abs(scene.low()), glm::abs(scene.high())));
+  // Nearer lights lose little, and keep every bit.
+  constexpr double far_away = 16.0;
+  if (view.origin.w < 0.5f || near < far_away * (far - near + size)) return;
+  const double moved = near - size;
+  // As shaders have it, which is not quite unit.
+  const glm::dvec3 forward(view.forward);
+  view.origin = glm::vec4(glm::dvec3(view.origin) + moved * forward, 1.0);
+  view.right.w = static_cast<float>(moved);
+  const double passed = moved * glm::dot(forward, forward);
+  set_range(view, static_cast<float>(near - passed), static_cast<float>(far - passed));
 }
 
 namespace {

@@ -70,6 +70,14 @@ void fit_ranges_to(std::vector<shader::MapView>& views, const std::vector<Bounds
 /// nowhere behind where the view begins.
 void set_fitted_range(shader::MapView& view, double near, double far);
 
+/// The range that parameters ask for in place of what was fitted.
+void set_given_range(shader::MapView& view, const ParameterValues& parameters);
+
+/// Moves the origin of a view whose light is far from the scene, beside the scene's size, and
+/// counts its range from there, so that depth is a float of what the scene spans.
+void count_from_scene(shader::MapView& view, const GpuScene& scene,
+                      const ParameterValues& parameters);
+
 /// The range of a view from near to far, m along its axis.
 void set_range(shader::MapView& view, float near, float far);
 
