@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "renderer/scene/convex_clip.h"
 
@@ -77,22 +78,70 @@ CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, d
                                         camera.near_plane + far) *
                 view;
   matrices.world_from_clip = glm::inverse(matrices.clip_from_world);
+  matrices.near_plane = camera.near_plane;
+  matrices.ends = camera.projection == Projection::orthographic;
   return matrices;
 }
 
-double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
-                  const std::vector<Bounds>& boxes) {
+namespace {
+
+/// Along the view, m from the camera.
+struct SeenDepths {
+  double nearest = std::numeric_limits<double>::infinity();
+  double farthest = -std::numeric_limits<double>::infinity();
+};
+
+SeenDepths seen_depths(const Camera& camera, const glm::dvec3& origin, double aspect,
+                       const std::vector<Bounds>& boxes) {
   const CameraMatrices matrices = camera_matrices(camera, origin, aspect, 1.0);
   const auto sides = side_planes(matrices.clip_from_world);
-  double farthest = 0.0;
+  SeenDepths seen;
   for (const Bounds& box : boxes)
     visit_clipped_corners(box, sides, [&](const glm::dvec3& corner) {
-      farthest = std::max(
-          farthest, glm::dot(corner - matrices.position, matrices.direction) - camera.near_plane);
+      const double depth = glm::dot(corner - matrices.position, matrices.direction);
+      seen.nearest = std::min(seen.nearest, depth);
+      seen.farthest = std::max(seen.farthest, depth);
     });
+  return seen;
+}
+
+/// Lets depth run from 1 at the near plane to 0 at `far` instead of at infinity.
+void end_depth(CameraMatrices& matrices, double far) {
+  const double span = far - matrices.near_plane;
+  for (int column = 0; column < 4; ++column) {
+    glm::dvec4& clip = matrices.clip_from_world[column];
+    clip.z = (far * clip.z - matrices.near_plane * clip.w) / span;
+  }
+  matrices.ends = true;
+}
+
+}  // namespace
+
+double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
+                  const std::vector<Bounds>& boxes) {
+  const double farthest = seen_depths(camera, origin, aspect, boxes).farthest - camera.near_plane;
   // Corners are rounded: what is seen must not end at the end of depth.
   constexpr double margin = 1.01;
   return farthest > 0.0 ? margin * farthest : 1.0;
+}
+
+CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, double aspect,
+                               const std::vector<Bounds>& boxes) {
+  const SeenDepths seen = seen_depths(camera, origin, aspect, boxes);
+  const bool perspective = camera.projection == Projection::perspective;
+  // Nearer cameras lose little, and keep every bit.
+  constexpr double far_away = 16.0;
+  const double span = seen.farthest - seen.nearest;
+  if (span < 0.0 || (perspective && seen.nearest < far_away * span))
+    return camera_matrices(camera, origin, aspect, 1.0);
+  // Corners are rounded, and what is flat has no depth of its own.
+  const double margin = std::max(0.01 * span, 1e-4 * seen.farthest);
+  Camera fitted = camera;
+  if (seen.nearest - margin > camera.near_plane) fitted.near_plane = seen.nearest - margin;
+  const double depth = seen_depth(fitted, origin, aspect, boxes);
+  CameraMatrices matrices = camera_matrices(fitted, origin, aspect, depth);
+  if (perspective) end_depth(matrices, fitted.near_plane + depth);
+  return matrices;
 }
 
 }  // namespace penumbra

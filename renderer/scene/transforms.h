@@ -25,9 +25,13 @@ glm::dvec3 across(const glm::dvec3& direction, const glm::dvec3& wanted);
 
 struct CameraMatrices {
   glm::dmat4 clip_from_world{1.0};
+  /// Of clip space (x, y, 1, 1) is a place on the near plane, and (x, y, 0, 1) of a perspective
+  /// view the direction through x, y, whatever becomes of depth beyond the near plane.
   glm::dmat4 world_from_clip{1.0};
   glm::dvec3 position{0.0};   ///< world, moved by -origin
   glm::dvec3 direction{0.0};  ///< unit
+  double near_plane = 0.0;    ///< m
+  bool ends = false;          ///< depth has an end, behind all that is seen
 };
 
 /// Corners of the rectangle that the picture shows of the near plane, in a round.
@@ -37,6 +41,12 @@ std::array<glm::dvec3, 4> near_corners(const CameraMatrices& camera);
 /// plane; perspective views have no end.
 CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, double aspect,
                                double far);
+
+/// A camera's matrices where visible things lie in these boxes. Depth is a float: it is counted
+/// over what is seen alone where the view has no perspective, or where all that is seen is so far
+/// away that nothing else tells it apart.
+CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, double aspect,
+                               const std::vector<Bounds>& boxes);
 
 /// The farthest that an orthographic camera sees of boxes, metres beyond its near plane: its depth
 /// is a float of that, and finer the less it spans. 1 where it sees none.

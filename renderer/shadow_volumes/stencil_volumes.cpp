@@ -19,11 +19,9 @@ vulkan::GraphicsState stencil_state(const PrepareContext& context, const VolumeO
   state.depth_test = true;
   // A crossing at the very depth of the surface counts as behind it.
   state.depth_compare = VK_COMPARE_OP_GREATER;
-  // A perspective view has its far plane at infinity and needs no clamp; without one, triangles are
-  // clipped just as they were when the depth was drawn. A parallel view ends somewhere, and what is
-  // behind its end counts.
-  state.depth_clamp = options.counting == Counting::behind &&
-                      context.input.camera.projection == Projection::orthographic;
+  // A view whose far plane is at infinity needs no clamp; without one, triangles are clipped just
+  // as they were when the depth was drawn. Where depth ends, what is behind its end counts.
+  state.depth_clamp = options.counting == Counting::behind && context.camera.ends;
   state.stencil_test = true;
   if (options.counting == Counting::behind) {
     state.stencil_front.depth_fail = VK_STENCIL_OP_DECREMENT_AND_WRAP;

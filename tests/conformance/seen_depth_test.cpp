@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "renderer/scene/transforms.h"
 
 namespace penumbra {
@@ -41,6 +43,61 @@ TEST(SeenDepth, counts_from_the_origin_of_the_device) {
   const glm::dvec3 origin(1e6, -3e5, 2e6);
   EXPECT_NEAR(seen_depth(from_above(), origin, 2.0, {{ground.low - origin, ground.high - origin}}),
               1.01 * 9.0, 1e-6);
+}
+
+/// Depth of a point as a device has it.
+float drawn_depth(const CameraMatrices& matrices, const glm::dvec3& point) {
+  const glm::vec4 clip = glm::mat4(matrices.clip_from_world) * glm::vec4(point, 1.0f);
+  return clip.z / clip.w;
+}
+
+Camera from_afar(double distance) {
+  Camera camera;
+  camera.position = {0.0, 0.0, distance};
+  camera.target = {0.0, 0.0, 0.0};
+  camera.vertical_fov = glm::degrees(2.0 * std::atan(2.0 / distance));
+  camera.near_plane = 0.1;
+  return camera;
+}
+
+TEST(MatricesSeeing, tell_a_hundredth_of_a_millimetre_apart_from_a_hundred_kilometres) {
+  const double distance = 1e5;
+  const Bounds room{{-5.0, -5.0, -5.0}, {5.0, 5.0, 5.0}};
+  const CameraMatrices fitted = matrices_seeing(from_afar(distance), {}, 1.0, {room});
+  EXPECT_TRUE(fitted.ends);
+  for (double z = -5.0; z < 5.0; z += 0.37) {
+    const float here = drawn_depth(fitted, {0.3, -0.2, z});
+    const float nearer = drawn_depth(fitted, {0.3, -0.2, z + 1e-5});
+    EXPECT_GT(nearer, here) << z;
+    EXPECT_GT(here, 0.0f);
+    EXPECT_LT(nearer, 1.0f);
+  }
+  // Depth n (f - z) / (z (f - n)) of the near plane n is 1.
+  const glm::dvec3 near(0.0, 0.0, distance - fitted.near_plane);
+  const glm::dvec4 clip = fitted.clip_from_world * glm::dvec4(near, 1.0);
+  EXPECT_NEAR(clip.z / clip.w, 1.0, 1e-9);
+}
+
+TEST(MatricesSeeing, look_where_the_camera_does_whatever_becomes_of_depth) {
+  const Camera camera = from_afar(1e5);
+  const CameraMatrices plain = camera_matrices(camera, {}, 1.0, 1.0);
+  const CameraMatrices fitted =
+      matrices_seeing(camera, {}, 1.0, {{{-5.0, -5.0, -5.0}, {5.0, 5.0, 5.0}}});
+  const glm::dvec4 point(1.0, -0.5, 2.0, 1.0);
+  const glm::dvec4 a = plain.clip_from_world * point, b = fitted.clip_from_world * point;
+  for (int axis : {0, 1, 3}) EXPECT_NEAR(a[axis], b[axis], 1e-9);
+  const glm::dvec3 through(plain.world_from_clip * glm::dvec4(0.4, 0.7, 0.0, 1.0));
+  const glm::dvec3 same(fitted.world_from_clip * glm::dvec4(0.4, 0.7, 0.0, 1.0));
+  EXPECT_LT(glm::length(glm::normalize(through) - glm::normalize(same)), 1e-12);
+}
+
+TEST(MatricesSeeing, leave_cameras_within_the_scene_every_bit) {
+  const Camera camera = from_afar(20.0);
+  const Bounds room{{-5.0, -5.0, -5.0}, {5.0, 5.0, 5.0}};
+  EXPECT_EQ(matrices_seeing(camera, {}, 1.0, {room}).clip_from_world,
+            camera_matrices(camera, {}, 1.0, 1.0).clip_from_world);
+  EXPECT_EQ(matrices_seeing(from_afar(1e5), {}, 1.0, {}).clip_from_world,
+            camera_matrices(from_afar(1e5), {}, 1.0, 1.0).clip_from_world);
 }
 
 }  // namespace
