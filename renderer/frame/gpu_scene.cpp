@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "renderer/error.h"
+#include "renderer/frame/split_triangles.h"
 #include "renderer/scene/coverage.h"
 #include "renderer/shaders/shader_types.h"
 
@@ -138,9 +139,8 @@ void GpuScene::add_vertices() {
     if (!used(i)) continue;
     const Instance& instance = scene_->instances[i];
     const Mesh& mesh = scene_->meshes[instance.mesh];
-    glm::dmat4 world_from_object = instance.world_from_object;
-    world_from_object[3] -= glm::dvec4(frame_.origin, 0.0);
-    const glm::dmat3 normal_matrix = glm::inverse(glm::transpose(glm::dmat3(world_from_object)));
+    const glm::dmat4 placed = world_from_object(static_cast<std::uint32_t>(i));
+    const glm::dmat3 normal_matrix = glm::inverse(glm::transpose(glm::dmat3(placed)));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const glm::dvec3 normal = normal_matrix * glm::dvec3(mesh.normals[v]);
       const double length = glm::length(normal);
@@ -149,9 +149,15 @@ void GpuScene::add_vertices() {
           length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : mesh.normals[v];
       out.uv = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[v];
       out.color = mesh.colors.empty() ? white : glm::packUnorm4x8(mesh.colors[v]);
-      position_list_.push_back(glm::vec3(world_from_object * glm::dvec4(mesh.positions[v], 1.0)));
+      position_list_.push_back(glm::vec3(placed * glm::dvec4(mesh.positions[v], 1.0)));
     }
   }
+}
+
+glm::dmat4 GpuScene::world_from_object(std::uint32_t instance) const {
+  glm::dmat4 placed = scene_->instances[instance].world_from_object;
+  placed[3] -= glm::dvec4(frame_.origin, 0.0);
+  return placed;
 }
 
 void GpuScene::add_range(const Part& part) {
@@ -160,7 +166,6 @@ void GpuScene::add_range(const Part& part) {
   const Primitive& primitive = *part.primitive;
   DrawRange range;
   range.first_index = static_cast<std::uint32_t>(index_list_.size());
-  range.index_count = primitive.index_count;
   range.material = primitive.material;
   range.instance = part.instance;
   range.visible = uses_[part.instance].visible;
@@ -179,7 +184,41 @@ void GpuScene::add_range(const Part& part) {
     range.low = glm::min(range.low, position_list_[index]);
     range.high = glm::max(range.high, position_list_[index]);
   }
+  // Holes are looked up by the corners that the mesh has.
+  if (is_far() && !range.masked) split_long_triangles(range.first_index, part.instance);
+  range.index_count = static_cast<std::uint32_t>(index_list_.size()) - range.first_index;
   ranges_.push_back(range);
+}
+
+void GpuScene::split_long_triangles(std::uint32_t first_index, std::uint32_t instance) {
+  const glm::dmat4 placed = world_from_object(instance);
+  const Mesh& mesh = scene_->meshes[scene_->instances[instance].mesh];
+  const auto surface = [&](std::uint32_t index) {
+    return reinterpret_cast<SurfaceVertex*>(surface_list_.data()) + index;
+  };
+  const auto corner = [&](std::uint32_t index) {
+    const glm::vec3& position = mesh.positions[index - first_vertex_[instance]];
+    const SurfaceVertex& own = *surface(index);
+    return FineVertex{glm::dvec3(placed * glm::dvec4(position, 1.0)), own.normal, own.uv,
+                      glm::unpackUnorm4x8(own.color)};
+  };
+  // Beside the reach, floats of such an edge are as fine as the frame is made for.
+  constexpr double short_share = 1.0 / 16.0;
+  TriangleSplitter splitter(short_share * frame_.reach,
+                            static_cast<std::uint32_t>(position_list_.size()), corner);
+  std::vector<std::uint32_t> whole(index_list_.begin() + first_index, index_list_.end());
+  index_list_.resize(first_index);
+  for (std::size_t i = 0; i + 2 < whole.size(); i += 3)
+    for (const auto& part : splitter.split({whole[i], whole[i + 1], whole[i + 2]}))
+      index_list_.insert(index_list_.end(), part.begin(), part.end());
+  for (const FineVertex& vertex : splitter.new_vertices()) {
+    position_list_.push_back(glm::vec3(vertex.position));
+    surface_list_.resize(position_list_.size() * sizeof(SurfaceVertex));
+    const float length = glm::length(vertex.normal);
+    *surface(static_cast<std::uint32_t>(position_list_.size() - 1)) = {
+        length > 0.0f ? vertex.normal / length : vertex.normal, vertex.uv,
+        glm::packUnorm4x8(vertex.color)};
+  }
 }
 
 void GpuScene::flatten() {

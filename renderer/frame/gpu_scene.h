@@ -124,6 +124,11 @@ class GpuScene {
   std::vector<Part> find_parts() const;  ///< by material
   void add_vertices();
   void add_range(const Part& part);
+  /// Parts of triangles that pass the origin closer than their corners' floats bear, in place of
+  /// them, from an index on.
+  void split_long_triangles(std::uint32_t first_index, std::uint32_t instance);
+  /// From an instance's coordinates to this scene's.
+  glm::dmat4 world_from_object(std::uint32_t instance) const;
   void flatten();
   bool used(std::size_t instance) const { return uses_[instance].visible || uses_[instance].casts; }
   void upload_materials(vulkan::Device& device);

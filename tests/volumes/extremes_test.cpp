@@ -60,7 +60,7 @@ Judged judge(const Scene& scene, const std::string& technique,
 }
 
 TEST(Rays, start_on_their_surface_however_large_the_scene) {
-  for (const double ground : {6.0, 1e3, 1e4, 1e5}) {
+  for (const double ground : {6.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8}) {
     const Judged judged = judge(gallery(ground), "ray-traced");
     EXPECT_GT(judged.dark, 0.05) << ground;
     EXPECT_LT(judged.wrong, 0.002) << "ground of " << ground << " m";
