@@ -82,7 +82,8 @@ PENUMBRA_CONSTANT int tile_sizes[tile_count] = {1024, 512, 512, 256, 128, 128, 1
 struct MapView {
   mat4 clip_from_world;
   vec4 origin;     // xyz world, w 1 for perspective
-  vec4 right;      // xyz scaled by half the map's width at unit distance
+  vec4 right;      // xyz scaled by half the map's width at unit distance; w how far the origin was
+                   // moved, m
   vec4 up;         // xyz scaled likewise, towards growing v
   vec4 forward;    // xyz unit, w size of a texel at unit distance (perspective) or anywhere, m
   vec4 range;      // x near, y far, m along forward; z 1 / (far - near); w bias of every depth, m

@@ -49,24 +49,29 @@ TEST_P(EveryHeldValue, holds) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, EveryHeldValue,
-    testing::Values(Held{"reference", "scale-down", 1e-8}, Held{"reference", "scale-up", 1e11},
-                    Held{"reference", "offset", 1e11}, Held{"reference", "offset-of-1e-4", 1e6},
-                    Held{"reference", "ground", 1e4}, Held{"reference", "outlier", 1e8},
-                    Held{"reference", "gap", 0.0}, Held{"reference", "fan", 1024},
-                    Held{"reference", "elevation", 0.01}, Held{"reference", "near", 1e-9},
-                    Held{"ray-traced", "rotation", 319.0}, Held{"ray-traced", "squash", 1e-9},
-                    Held{"ray-traced", "coincident", 8}, Held{"ray-traced", "blade", 1e-8},
-                    Held{"shadow-volumes", "zoom", 1e-3}, Held{"shadow-volumes", "ground", 1e5},
-                    Held{"shadow-volumes", "overlaps", 33},
-                    Held{"shadow-volumes", "wide-view", 179.9},
-                    Held{"shadow-volumes", "defects", 6}, Held{"shadow-volumes", "intensity", 1e30},
-                    Held{"shadow-map", "ground", 1e5}, Held{"shadow-map", "near", 1e-9},
-                    Held{"shadow-map", "scale-down", 1e-8},
-                    Held{"shadow-volumes", "scale-up", 1e12}, Held{"vsm", "outlier", 1e6},
-                    Held{"reference", "spot-distance", 1e6},
-                    Held{"ray-traced", "spot-distance", 1e5}, Held{"reference", "cone", 0.05},
-                    Held{"shadow-map", "orthographic-outlier", 1e8},
-                    Held{"shadow-volumes", "orthographic-outlier", 1e8}));
+    testing::Values(
+        Held{"reference", "scale-down", 1e-8}, Held{"reference", "scale-up", 1e14},
+        Held{"reference", "offset", 1e11}, Held{"reference", "offset-of-1e-4", 1e6},
+        Held{"reference", "ground", 1e8}, Held{"reference", "outlier", 1e8},
+        Held{"reference", "gap", 0.0}, Held{"reference", "fan", 1024},
+        Held{"reference", "elevation", 0.01}, Held{"reference", "near", 1e-9},
+        Held{"ray-traced", "rotation", 319.0}, Held{"ray-traced", "squash", 1e-9},
+        Held{"ray-traced", "coincident", 8}, Held{"ray-traced", "blade", 1e-8},
+        Held{"shadow-volumes", "zoom", 1e-3}, Held{"shadow-volumes", "ground", 1e8},
+        Held{"shadow-volumes", "overlaps", 33}, Held{"shadow-volumes", "wide-view", 179.9},
+        Held{"shadow-volumes", "defects", 6}, Held{"shadow-volumes", "intensity", 1e30},
+        Held{"shadow-map", "ground", 1e8}, Held{"shadow-map", "near", 1e-9},
+        Held{"shadow-map", "scale-down", 1e-8}, Held{"shadow-volumes", "scale-up", 1e12},
+        Held{"vsm", "outlier", 1e6}, Held{"reference", "spot-distance", 1e6},
+        Held{"ray-traced", "spot-distance", 1e5}, Held{"reference", "cone", 0.002},
+        Held{"ray-traced", "zoom", 1e-3}, Held{"reference", "dolly", 1e-3},
+        Held{"ray-traced", "orthographic-height", 1e-3}, Held{"shadow-volumes", "dolly", 1e-3},
+        Held{"hybrid", "dolly", 1e-3}, Held{"reference", "light-height", 1e-6},
+        Held{"shadow-volumes", "light-height", 1e-6}, Held{"pcss", "ground", 1e8},
+        Held{"shadow-map", "spot-distance", 1e6}, Held{"pcss", "spot-distance", 1e6},
+        Held{"esm", "spot-distance", 1e6}, Held{"msm", "scale-up", 1e14},
+        Held{"shadow-map", "orthographic-outlier", 1e8},
+        Held{"shadow-volumes", "orthographic-outlier", 1e8}));
 
 TEST(WidePictures, keep_their_light_however_long_they_are) {
   // Few of their pixels see the scene: all of those are judged.
