@@ -69,6 +69,8 @@ struct Requirements {
   bool shade_each_point = false;   ///< light from each point, not from the centre
   bool random_points = false;      ///< points from a seeded generator, not low-discrepancy
   bool scrambles = false;          ///< points in 16 independent sets, whose spread tells the error
+  std::string definitions;  ///< lines of GLSL before its programs, beside parameters: what is known
+                            ///< of the light need not be asked for every sample
 };
 
 /// A way to find the visibility of one light. An instance serves one light of one render; the core

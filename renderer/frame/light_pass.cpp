@@ -29,6 +29,7 @@ LightPass::LightPass(const FrameSetup& setup, const Light& light, const LightFit
       technique_(setup.request.technique->create()),
       fit_(fit) {
   technique_->require(input_, needs_);
+  declarations_ = setup_.declarations + needs_.definitions;
   sets_ = setup_.side * setup_.side;
   const std::uint32_t in_set = std::max(1u, needs_.light_points / sets_);
   has_scrambles_ =
@@ -103,7 +104,7 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
                            frame.constants,
                            frame.recorder,
                            bindings,
-                           setup_.declarations,
+                           declarations_,
                            points,
                            batch.count,
                            index,
@@ -179,7 +180,7 @@ void LightPass::draw_light(
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, fragment_stage}};
-  source.preamble = setup_.declarations;
+  source.preamble = declarations_;
   if (needs_.shade_each_point) source.preamble += "#define SHADE_EACH_POINT\n";
   if (frame.visibility != nullptr) source.preamble += "#define WITH_VISIBILITY\n";
   vulkan::GraphicsState state;
@@ -230,7 +231,7 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
                              const Batch& batch, bool at_fully_lit) {
   const SampleList* list = technique_->lit_samples();
   if (list == nullptr && at_fully_lit) return;
-  std::string preamble = setup_.declarations;
+  std::string preamble = declarations_;
   if (needs_.shade_each_point) preamble += "#define SHADE_EACH_POINT\n";
   if (list != nullptr) preamble += "#define WITH_SAMPLE_LIST\n";
   const bool uncertain = has_scrambles_ && frame.uncertainty != nullptr;
@@ -272,7 +273,7 @@ void LightPass::draw_diagnostic(const Frame& frame, const std::string& name,
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT,
                     program_path(frame.shaders, "renderer/shaders/diagnostic.glsl")}};
-  source.preamble = setup_.declarations + "#define DRAW_DIAGNOSTIC " + function + "\n";
+  source.preamble = declarations_ + "#define DRAW_DIAGNOSTIC " + function + "\n";
   vulkan::GraphicsState state;
   state.color_formats = {target.description().format};
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);

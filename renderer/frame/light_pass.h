@@ -84,6 +84,7 @@ class LightPass {
   TechniqueInput input_;
   Requirements needs_;
   std::unique_ptr<Technique> technique_;
+  std::string declarations_;  ///< GLSL of the parameters, and what the technique defines
   const LightFit& fit_;
   PointRange round_;                   ///< of the points of a pixel
   std::vector<glm::vec4> points_;      ///< its points, set after set

@@ -47,7 +47,7 @@ class PrepareContext {
   const vulkan::Bindings&
       frame_bindings;  ///< FrameBlock, LightBlock, LightPointBlock, ParameterBlock,
                        ///< geometry_position, geometry_words, MaterialBlock, FaultBlock
-  const std::string& declarations;    ///< GLSL of the parameters, for preambles of own programs
+  const std::string& declarations;    ///< GLSL of parameters and definitions, for own programs
   std::span<const glm::vec4> points;  ///< light points of this batch: points_per_batch places for
                                       ///< each sample of a pixel, points_in_batch of them in use
   std::uint32_t points_in_batch;

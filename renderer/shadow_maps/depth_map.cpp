@@ -174,6 +174,7 @@ std::uint32_t view_count(const TechniqueInput& input) {
 void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   const Layout& layout = chosen_layout(input.parameters);
   require_served(layout, input.light);
+  needs.definitions += view_definitions(input);
   if (layout.ranking != TileRanking::none) {
     if (knows_two_surfaces(input.parameters))
       throw unsupported("layout " + layout.id + " keeps one surface; bias_strategy " +
@@ -215,6 +216,7 @@ void DepthMap::draw(PrepareContext& context, const MapUse& use) {
   const ParameterValues& parameters = context.input.parameters;
   const auto size = static_cast<std::uint32_t>(integer_of(parameters, "map_size"));
   Views views = fit_views(context, use);
+  check_views(context.input, views);
   const auto slope_scale = static_cast<float>(real_of(parameters, "slope_scale"));
   for (shader::MapView& view : views) {
     set_given_range(view, parameters);

@@ -11,7 +11,11 @@
 #include "renderer/shadow_maps/bias/strategies.glsl"
 #include "renderer/shadow_maps/texels/depth_coding.glsl"
 
+#ifdef ONE_VIEW
+int view_count() { return 1; }
+#else
 int view_count() { return int(map.texel.z); }
+#endif
 
 /// Texels along a side of a view.
 float view_size(int view) { return map.views[view].texels.x; }
@@ -44,6 +48,9 @@ float filter_view(ShadowQuery query, int view);
 float calculate_shadow(ShadowQuery query) {
   ViewChoice choice = choose_views(query.position);
   if (choice.first < 0) return 1.0;
+#ifdef ONE_VIEW
+  return filter_view(query, 0);
+#else
   // One call in a loop: with two calls drivers would compile the filter twice.
   int views = choice.share > 0.0 ? 2 : 1;
   float lit = 0.0;
@@ -52,6 +59,7 @@ float calculate_shadow(ShadowQuery query) {
     lit = i == 0 ? own : mix(lit, own, choice.share);
   }
   return lit;
+#endif
 }
 
 /// A receiver on the map.

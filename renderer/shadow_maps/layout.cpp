@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "renderer/error.h"
+#include "renderer/shadow_maps/views/light_view.h"
 
 namespace penumbra::shadow_maps {
 
@@ -48,6 +49,31 @@ const Layout& chosen_layout(const ParameterValues& parameters) {
   for (const Layout& layout : layouts())
     if (layout.id == id) return layout;
   throw std::logic_error("parameter layout names none: " + id);
+}
+
+namespace {
+
+bool may_warp(const Layout& layout, const TechniqueInput& input) {
+  return layout.warps && layout.warps(input.light, input.parameters);
+}
+
+}  // namespace
+
+std::string view_definitions(const TechniqueInput& input) {
+  const Layout& layout = chosen_layout(input.parameters);
+  std::string lines;
+  if (layout.view_count(input.light, input.parameters) == 1) lines += "#define ONE_VIEW\n";
+  if (!may_warp(layout, input)) lines += "#define UNWARPED\n";
+  return lines;
+}
+
+void check_views(const TechniqueInput& input, const std::vector<shader::MapView>& views) {
+  const Layout& layout = chosen_layout(input.parameters);
+  const bool warped = std::any_of(views.begin(), views.end(), is_warped);
+  if (views.size() == layout.view_count(input.light, input.parameters) &&
+      (!warped || may_warp(layout, input)))
+    return;
+  throw std::logic_error("layout " + layout.id + " fitted other views than it told of");
 }
 
 }  // namespace penumbra::shadow_maps

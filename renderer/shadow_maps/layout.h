@@ -53,9 +53,16 @@ struct Layout {
   std::vector<LightKind> serves;      ///< kinds of light that it is for
   std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
   std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
+  std::function<bool(const Light&, const ParameterValues&)>
+      warps;                   ///< whether views may be warped; without it none is
   bool reads_samples = false;  ///< it asks for `seen_bounds`
   TileRanking ranking = TileRanking::none;
 };
+
+/// For Layout::warps of those that fit views to what is seen: a crop is a warp, too.
+inline bool always_warps(const Light&, const ParameterValues&) {
+  return true;
+}
 
 inline constexpr const char* default_layout = "single";
 
@@ -72,5 +79,12 @@ std::vector<std::string> layouts_for(LightKind kind);
 
 /// The one that parameter `layout` names.
 const Layout& chosen_layout(const ParameterValues& parameters);
+
+/// GLSL that tells what is known of the views before they are fitted: that there is one, that none
+/// is warped. Pictures are the same without it.
+std::string view_definitions(const TechniqueInput& input);
+
+/// Throws std::logic_error where views are not as view_definitions told.
+void check_views(const TechniqueInput& input, const std::vector<shader::MapView>& views);
 
 }  // namespace penumbra::shadow_maps

@@ -111,6 +111,7 @@ Layout describe_cascaded_sdsm() {
           .view_count = [](const Light&,
                            const ParameterValues& parameters) { return cascade_count(parameters); },
           .fit = fit_to_samples,
+          .warps = always_warps,
           .reads_samples = true};
 }
 

@@ -31,7 +31,8 @@ Layout describe_light_space_perspective() {
           .parameters = {distance},
           .serves = {LightKind::directional},
           .view_count = [](const Light&, const ParameterValues&) { return 1u; },
-          .fit = fit_light_space_perspective};
+          .fit = fit_light_space_perspective,
+          .warps = always_warps};
 }
 
 }  // namespace penumbra::shadow_maps

@@ -252,7 +252,8 @@ Layout describe_perspective() {
           .serves = {LightKind::directional, LightKind::spot},
           .view_count = [](const Light& light,
                            const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
-          .fit = fit_perspective};
+          .fit = fit_perspective,
+          .warps = always_warps};
 }
 
 }  // namespace penumbra::shadow_maps

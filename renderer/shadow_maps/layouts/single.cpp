@@ -7,15 +7,18 @@
 namespace penumbra::shadow_maps {
 namespace {
 
+bool follows_camera(const Light& light, const ParameterValues& parameters) {
+  return is_at_infinity(light) && choice_of(parameters, "focus") == "seen";
+}
+
 std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
   const WorldLight& light = fitting.light;
-  const bool parallel = is_at_infinity(*light.source);
-  if (parallel && choice_of(fitting.parameters, "focus") == "seen")
+  if (follows_camera(*light.source, fitting.parameters))
     return fit_warped(fitting,
                       [](const WarpInput&) { return std::numeric_limits<double>::infinity(); });
   const double widen = 1.0 / (1.0 - 2.0 * guard_share(fitting.use, fitting.size));
   std::vector<shader::MapView> views;
-  if (parallel) {
+  if (is_at_infinity(*light.source)) {
     const ViewAxes axes{light.direction, light.up};
     const Bounds bounds = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
     const glm::dvec3 center = bounds.center();
@@ -43,7 +46,8 @@ Layout describe_single() {
           .serves = {LightKind::spot, LightKind::directional, LightKind::point},
           .view_count = [](const Light& light,
                            const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
-          .fit = fit_single};
+          .fit = fit_single,
+          .warps = follows_camera};
 }
 
 }  // namespace penumbra::shadow_maps

@@ -42,7 +42,8 @@ Layout describe_trapezoidal() {
                                          "Share of the map that the part in focus gets.")},
           .serves = {LightKind::directional},
           .view_count = [](const Light&, const ParameterValues&) { return 1u; },
-          .fit = fit_trapezoidal};
+          .fit = fit_trapezoidal,
+          .warps = always_warps};
 }
 
 }  // namespace penumbra::shadow_maps

@@ -24,6 +24,9 @@ struct Spread {
   vec2 lean;
 };
 
+#ifdef UNWARPED
+Spread spread_at(MapView view, vec2 texel) { return Spread(mat2(1.0), vec2(0.0)); }
+#else
 Spread spread_at(MapView view, vec2 texel) {
   mat3 unwarp = mat3(view.unwarp[0].xyz, view.unwarp[1].xyz, view.unwarp[2].xyz);
   vec3 place = unwarp * vec3(texel, 1.0);
@@ -34,6 +37,7 @@ Spread spread_at(MapView view, vec2 texel) {
                        unwarp[1].xy / place.z - plain * spread.lean.y);
   return spread;
 }
+#endif
 
 /// Longest step on the unwarped map for a step of one texel: the greater singular value.
 float widest_texel(Spread spread) {

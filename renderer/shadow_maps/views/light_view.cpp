@@ -148,6 +148,11 @@ void warp_view(shader::MapView& view, const glm::dmat3& warp, double size) {
   for (int column = 0; column < 3; ++column) view.unwarp[column] = glm::vec4(unwarp[column], 0.0);
 }
 
+bool is_warped(const shader::MapView& view) {
+  const glm::mat3 unwarp{view.unwarp[0], view.unwarp[1], view.unwarp[2]};
+  return unwarp != glm::mat3(1.0f);
+}
+
 double guard_share(const MapUse& use, std::uint32_t size) {
   // Up to a quarter of the view.
   return std::min((use.border + 1.0) / size, 0.5 - 0.5 / widest_filtered_cone);

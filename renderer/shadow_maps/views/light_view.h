@@ -38,6 +38,7 @@ bool cuts_casters(const shader::MapView& view);
 /// Bends the plane across the view's axis: the view's clip coordinates x, y, w are multiplied by
 /// `warp`. w stays above 0 over what is to be seen.
 void warp_view(shader::MapView& view, const glm::dmat3& warp, double size);
+bool is_warped(const shader::MapView& view);
 
 /// Share of its width by which a view is widened on each side for the filter.
 double guard_share(const MapUse& use, std::uint32_t size);
