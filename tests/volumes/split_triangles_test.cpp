@@ -39,7 +39,7 @@ struct Square {
 };
 
 TEST(TriangleSplitter, keeps_what_floats_bear) {
-  Square square(4.0);
+  Square square(3.0);
   EXPECT_EQ(square.split(), (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
 }
 
