@@ -112,19 +112,19 @@ std::vector<shader::MapView> place_tiles(const ViewFitting& fitting) {
   const Bounds covered = bounds_along(covered_box(fitting.scene, fitting.fit), axes);
   const TileSquare square = place_square(fitting, axes, covered);
   const double half = square.radius / shader::tiles_a_side;
-  std::vector<shader::MapView> tiles;
+  std::vector<shader::MapView> placed;
   for (int row = 0; row < shader::tiles_a_side; ++row)
     for (int column = 0; column < shader::tiles_a_side; ++column) {
       const double right = square.center.x + half * (2 * column + 1 - shader::tiles_a_side);
       const double up = square.center.y - half * (2 * row + 1 - shader::tiles_a_side);
-      tiles.push_back(make_view(right * axes.right() + up * axes.up + covered.low.z * axes.forward,
-                                axes, half, false, shader::largest_tile));
+      placed.push_back(make_view(right * axes.right() + up * axes.up + covered.low.z * axes.forward,
+                                 axes, half, false, shader::largest_tile));
     }
-  fit_ranges(tiles, fitting.scene, fitting.fit, true);
+  fit_ranges(placed, fitting.scene, fitting.fit, true);
   if (choice_of(fitting.parameters, "tile_range") != "common" && !fitting.use.follows_extent &&
       !fitting.use.common_range)
-    for (shader::MapView& tile : tiles) fit_to_spheres(tile, fitting.scene);
-  return tiles;
+    for (shader::MapView& tile : placed) fit_to_spheres(tile, fitting.scene);
+  return placed;
 }
 
 Layout tile_layout(const std::string& id, const std::string& meaning, TileRanking ranking) {
