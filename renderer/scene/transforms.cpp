@@ -89,6 +89,7 @@ namespace {
 struct SeenDepths {
   double nearest = std::numeric_limits<double>::infinity();
   double farthest = -std::numeric_limits<double>::infinity();
+  double reach = 0.0;  ///< farthest from where coordinates begin, m: floats are as coarse as that
 };
 
 SeenDepths seen_depths(const Camera& camera, const glm::dvec3& origin, double aspect,
@@ -101,6 +102,7 @@ SeenDepths seen_depths(const Camera& camera, const glm::dvec3& origin, double as
       const double depth = glm::dot(corner - matrices.position, matrices.direction);
       seen.nearest = std::min(seen.nearest, depth);
       seen.farthest = std::max(seen.farthest, depth);
+      seen.reach = std::max(seen.reach, glm::length(corner));
     });
   return seen;
 }
@@ -135,10 +137,10 @@ CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, d
   if (span < 0.0 || (perspective && seen.nearest < far_away * span))
     return camera_matrices(camera, origin, aspect, 1.0);
   // Corners are rounded, and what is flat has no depth of its own.
-  const double margin = std::max(0.01 * span, 1e-4 * seen.farthest);
+  const double margin = std::max({0.01 * span, 1e-4 * seen.farthest, 1e-5 * seen.reach});
   Camera fitted = camera;
   if (seen.nearest - margin > camera.near_plane) fitted.near_plane = seen.nearest - margin;
-  const double depth = seen_depth(fitted, origin, aspect, boxes);
+  const double depth = seen_depth(fitted, origin, aspect, boxes) + margin;
   CameraMatrices matrices = camera_matrices(fitted, origin, aspect, depth);
   if (perspective) end_depth(matrices, fitted.near_plane + depth);
   return matrices;

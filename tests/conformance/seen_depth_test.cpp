@@ -91,6 +91,22 @@ TEST(MatricesSeeing, look_where_the_camera_does_whatever_becomes_of_depth) {
   EXPECT_LT(glm::length(glm::normalize(through) - glm::normalize(same)), 1e-12);
 }
 
+TEST(MatricesSeeing, keep_what_is_flat_wherever_coordinates_begin) {
+  Camera camera = from_afar(0.04);
+  camera.projection = Projection::orthographic;
+  camera.orthographic_height = 1.0;
+  camera.near_plane = 0.01;
+  for (const double away : {0.0, 1.5, -100.0}) {
+    const glm::dvec3 origin(0.0, 0.0, away);
+    const Bounds flat{{-2.0, -2.0, 0.0}, {2.0, 2.0, 0.0}};
+    const Bounds moved{flat.low - origin, flat.high - origin};
+    const CameraMatrices fitted = matrices_seeing(camera, origin, 1.0, {moved});
+    const float depth = drawn_depth(fitted, {0.25, -0.5, -away});
+    EXPECT_GT(depth, 0.0f) << away;
+    EXPECT_LT(depth, 1.0f) << away;
+  }
+}
+
 TEST(MatricesSeeing, leave_cameras_within_the_scene_every_bit) {
   const Camera camera = from_afar(20.0);
   const Bounds room{{-5.0, -5.0, -5.0}, {5.0, 5.0, 5.0}};
