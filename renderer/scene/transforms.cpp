@@ -119,14 +119,6 @@ void end_depth(CameraMatrices& matrices, double far) {
 
 }  // namespace
 
-double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
-                  const std::vector<Bounds>& boxes) {
-  const double farthest = seen_depths(camera, origin, aspect, boxes).farthest - camera.near_plane;
-  // Corners are rounded: what is seen must not end at the end of depth.
-  constexpr double margin = 1.01;
-  return farthest > 0.0 ? margin * farthest : 1.0;
-}
-
 CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, double aspect,
                                const std::vector<Bounds>& boxes) {
   const SeenDepths seen = seen_depths(camera, origin, aspect, boxes);
@@ -140,7 +132,8 @@ CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, d
   const double margin = std::max({0.01 * span, 1e-4 * seen.farthest, 1e-5 * seen.reach});
   Camera fitted = camera;
   if (seen.nearest - margin > camera.near_plane) fitted.near_plane = seen.nearest - margin;
-  const double depth = seen_depth(fitted, origin, aspect, boxes) + margin;
+  const double behind_near = seen.farthest + margin - fitted.near_plane;
+  const double depth = behind_near > margin ? behind_near : 1.0;
   CameraMatrices matrices = camera_matrices(fitted, origin, aspect, depth);
   if (perspective) end_depth(matrices, fitted.near_plane + depth);
   return matrices;

@@ -48,9 +48,4 @@ CameraMatrices camera_matrices(const Camera& camera, const glm::dvec3& origin, d
 CameraMatrices matrices_seeing(const Camera& camera, const glm::dvec3& origin, double aspect,
                                const std::vector<Bounds>& boxes);
 
-/// The farthest that an orthographic camera sees of boxes, metres beyond its near plane: its depth
-/// is a float of that, and finer the less it spans. 1 where it sees none.
-double seen_depth(const Camera& camera, const glm::dvec3& origin, double aspect,
-                  const std::vector<Bounds>& boxes);
-
 }  // namespace penumbra

@@ -124,7 +124,7 @@ Cost time_frames(Renderer& renderer, const Task& task, const RenderResult& first
   RenderRequest request = to_render_request(task.request);
   request.frames = frames_to_time(renderer, task, first.cost, notes);
   request.settle = true;
-  return renderer.render(request, {progress, {}, {}, {}}).cost;
+  return renderer.render(request, {.progress = progress}).cost;
 }
 
 /// Times the same view without shadows, in the same breath: a device's clocks and a machine's other
@@ -139,7 +139,7 @@ Cost time_baseline(Renderer& renderer, const Task& task, const Cost& cost,
                task.request.frames > 0 ? task.request.frames
                                        : affordable_frames(frame_ms_of(cost), baseline_budget_ms));
   request.settle = true;
-  return renderer.render(request, {progress, {}, {}, {}}).cost;
+  return renderer.render(request, {.progress = progress}).cost;
 }
 
 json measure_cost(Renderer& renderer, const Task& task, const RenderResult& first, Parts& parts,

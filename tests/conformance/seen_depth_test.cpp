@@ -19,30 +19,37 @@ Camera from_above() {
   return camera;
 }
 
-double depth_of(const std::vector<Bounds>& boxes) {
-  return seen_depth(from_above(), glm::dvec3(0.0), 2.0, boxes);
+/// Where the depth of a parallel view from above ends, m below its near plane; depth falls from 1
+/// to 0 evenly.
+double end_of(const std::vector<Bounds>& boxes, const glm::dvec3& origin = {}) {
+  const CameraMatrices matrices = matrices_seeing(from_above(), origin, 2.0, boxes);
+  const auto depth_at = [&](double y) {
+    return (matrices.clip_from_world * glm::dvec4(glm::dvec3(3.0, y, 0.0) - origin, 1.0)).z;
+  };
+  const double fall = depth_at(1.0) - depth_at(0.0);
+  return 10.0 + depth_at(0.0) / fall;
 }
 
-TEST(SeenDepth, reaches_one_part_in_a_hundred_beyond_the_farthest_that_is_seen) {
+TEST(MatricesSeeing, end_one_part_in_a_hundred_behind_the_farthest_that_is_seen) {
   const Bounds ground{{-50.0, -2.0, -50.0}, {50.0, 0.0, 50.0}};
-  EXPECT_NEAR(depth_of({ground}), 1.01 * 11.0, 1e-9);
-  EXPECT_NEAR(depth_of({{{2.9, 3.0, -0.1}, {3.1, 4.0, 0.1}}}), 1.01 * 6.0, 1e-9);
+  EXPECT_NEAR(end_of({ground}), 12.0 + 0.01 * 2.0, 1e-9);
+  EXPECT_NEAR(end_of({{{2.9, 3.0, -0.1}, {3.1, 4.0, 0.1}}}), 7.0 + 0.01, 1e-9);
 }
 
-TEST(SeenDepth, knows_nothing_of_what_is_out_of_sight) {
-  const Bounds ground{{-50.0, 0.0, -50.0}, {50.0, 0.0, 50.0}};
+TEST(MatricesSeeing, know_nothing_of_what_is_out_of_sight) {
+  const Bounds ground{{-50.0, -2.0, -50.0}, {50.0, 0.0, 50.0}};
   const Bounds aside{{5.1, -1e8, -1.0}, {6.0, -1e8, 1.0}},
       above{{-9.0, 20.0, -9.0}, {9.0, 30.0, 9.0}};
-  EXPECT_NEAR(depth_of({ground, aside, above}), 1.01 * 9.0, 1e-9);
-  EXPECT_EQ(depth_of({aside, above}), 1.0);
-  EXPECT_EQ(depth_of({}), 1.0);
+  EXPECT_NEAR(end_of({ground, aside}), 12.0 + 0.01 * 2.0, 1e-9);
+  EXPECT_NEAR(end_of({aside}), 1.0 + 1.0, 1e-9);
+  EXPECT_NEAR(end_of({aside, above}), 1.0 + 1.0, 1e-9);
+  EXPECT_NEAR(end_of({}), 1.0 + 1.0, 1e-9);
 }
 
-TEST(SeenDepth, counts_from_the_origin_of_the_device) {
-  const Bounds ground{{-50.0, 0.0, -50.0}, {50.0, 0.0, 50.0}};
-  const glm::dvec3 origin(1e6, -3e5, 2e6);
-  EXPECT_NEAR(seen_depth(from_above(), origin, 2.0, {{ground.low - origin, ground.high - origin}}),
-              1.01 * 9.0, 1e-6);
+TEST(MatricesSeeing, count_from_the_origin_of_the_device) {
+  const Bounds ground{{-50.0, -2.0, -50.0}, {50.0, 0.0, 50.0}};
+  const glm::dvec3 origin(1e3, -3e2, 2e3);
+  EXPECT_NEAR(end_of({{ground.low - origin, ground.high - origin}}, origin), 12.0 + 0.0225, 2e-3);
 }
 
 /// Depth of a point as a device has it.

@@ -39,7 +39,7 @@ float granted_texels(float kernel_radius) {
 /// receivers are granted. dual-depth: what a facet spans over the kernel that rises four units for each
 /// across.
 float texels_behind_first(float kernel_radius) {
-  return parameter_bias_strategy == bias_strategy_auto ? 0.5 + 0.25 * kernel_radius
+  return parameter_bias_strategy == bias_strategy_auto ? granted_texels(kernel_radius)
                                                        : 4.0 * (0.5 + kernel_radius);
 }
 

@@ -49,23 +49,29 @@ MapProbes map_probes(ShadowQuery query, MapPoint point) {
 }
 
 #ifdef TEXELS_IN_BUFFER
-/// Where the four texels lie that are interpolated, and the share of the later ones.
+/// Where the four texels lie that are interpolated, the share of the later ones, and the sum of the blur's
+/// weights along one side.
 struct BlurTexels {
   ivec2 first;
   vec2 share;
+  float total;
 };
 BlurTexels texels_around(MapPoint point) {
   vec2 corner = point.texel - 0.5;
-  return BlurTexels(ivec2(floor(corner)), fract(corner));
-}
-
-/// Weight of the texel `offset` from the first along one side, -blur to blur + 1; all together are 1.
-float weight_in_blur(int offset, float share) {
-  float own = offset <= parameter_blur ? blur_weight(offset) : 0.0;
-  float next = offset > -parameter_blur ? blur_weight(offset - 1) : 0.0;
   float total = 0.0;
   for (int i = -parameter_blur; i <= parameter_blur; ++i) total += blur_weight(i);
-  return mix(own, next, share) / total;
+  return BlurTexels(ivec2(floor(corner)), fract(corner), total);
+}
+
+/// Weight of the texel at an offset from the first, -blur to blur + 1 along both sides.
+float weight_in_blur(ivec2 offset, BlurTexels texels) {
+  vec2 weight;
+  for (int side = 0; side < 2; ++side) {
+    float own = offset[side] <= parameter_blur ? blur_weight(offset[side]) : 0.0;
+    float next = offset[side] > -parameter_blur ? blur_weight(offset[side] - 1) : 0.0;
+    weight[side] = mix(own, next, texels.share[side]) / texels.total;
+  }
+  return weight.x * weight.y;
 }
 
 vec4 read_blurred(ShadowQuery query, MapPoint point) {
@@ -73,8 +79,7 @@ vec4 read_blurred(ShadowQuery query, MapPoint point) {
   precise vec4 sum = vec4(0.0);
   for (int y = -parameter_blur; y <= parameter_blur + 1; ++y)
     for (int x = -parameter_blur; x <= parameter_blur + 1; ++x) {
-      float weight = weight_in_blur(x, texels.share.x) * weight_in_blur(y, texels.share.y);
-      sum += weight * encode_depth(fetch_depth(point, texels.first + ivec2(x, y)));
+      sum += weight_in_blur(ivec2(x, y), texels) * encode_depth(fetch_depth(point, texels.first + ivec2(x, y)));
     }
   return sum;
 }
@@ -86,7 +91,7 @@ float read_logarithms(MapPoint point) {
   float sum = 0.0;
   for (int y = -parameter_blur; y <= parameter_blur + 1; ++y)
     for (int x = -parameter_blur; x <= parameter_blur + 1; ++x) {
-      float weight = weight_in_blur(x, texels.share.x) * weight_in_blur(y, texels.share.y);
+      float weight = weight_in_blur(ivec2(x, y), texels);
       float value = encode_depth(fetch_depth(point, texels.first + ivec2(x, y))).r;
       // The greatest term is kept apart: exponentials of the others then lie between 0 and 1.
       float top = max(greatest, value);
