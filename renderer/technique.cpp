@@ -5,10 +5,12 @@
 
 namespace penumbra {
 
-TechniqueInput technique_input(const RenderRequest& request, const Light& light,
-                               const Camera& camera, const ParameterValues& parameters) {
+TechniqueInput technique_input(const RenderRequest& request, const Bounds& scene_box,
+                               const Light& light, const Camera& camera,
+                               const ParameterValues& parameters) {
   const std::uint32_t side = samples_per_side(request.supersampling);
   return {*request.scene,
+          scene_box,
           light,
           camera,
           parameters,

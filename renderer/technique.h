@@ -22,6 +22,7 @@ class Bindings;  // renderer/vulkan/pipeline.h: shader resources by name
 /// What is known of a light's task before anything is allocated.
 struct TechniqueInput {
   const Scene& scene;
+  Bounds scene_box;  ///< around all instances, in the scene's coordinates
   const Light& light;
   const Camera& camera;
   const ParameterValues& parameters;  ///< complete: every declared parameter has a value
@@ -32,8 +33,9 @@ struct TechniqueInput {
 };
 
 /// What a light's task is in a picture; `parameters` are complete.
-TechniqueInput technique_input(const RenderRequest& request, const Light& light,
-                               const Camera& camera, const ParameterValues& parameters);
+TechniqueInput technique_input(const RenderRequest& request, const Bounds& scene_box,
+                               const Light& light, const Camera& camera,
+                               const ParameterValues& parameters);
 
 /// Which instances may change what a technique returns for the surfaces that are seen.
 enum class CasterUse {

@@ -17,7 +17,7 @@ bool serves(const TechniqueDescription& technique, const std::string& layout, Li
   Scene scene;
   scene.lights.emplace_back().kind = kind;
   const Camera camera;
-  const TechniqueInput input{scene, scene.lights.front(), camera, parameters, 1, 1, 1, 0};
+  const TechniqueInput input{scene, {}, scene.lights.front(), camera, parameters, 1, 1, 1, 0};
   try {
     Requirements needs;
     technique.create()->require(input, needs);

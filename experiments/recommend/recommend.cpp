@@ -109,7 +109,7 @@ class Bench {
 std::string refusal_of(Engine& engine, const Run& run) {
   const RenderRequest request = engine.request_of(run);
   try {
-    requirements_of(request, request.parameters);
+    requirements_of(request, request.parameters, instance_boxes(*request.scene));
   } catch (const Error& error) {
     return error.what();
   }

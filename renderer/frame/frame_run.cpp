@@ -43,12 +43,14 @@ Plan checked(Plan plan, const DeviceLimits& limits) {
   return plan;
 }
 
-std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup, const Plan& plan) {
+std::vector<std::unique_ptr<LightPass>> make_lights(const FrameSetup& setup,
+                                                    const Bounds& scene_box, const Plan& plan) {
   std::vector<std::unique_ptr<LightPass>> lights;
   for (std::size_t i = 0; i < plan.lights.size(); ++i)
-    lights.push_back(plan.lights[i] ? std::make_unique<LightPass>(
-                                          setup, setup.request.scene->lights[i], plan.fits[i])
-                                    : nullptr);
+    lights.push_back(plan.lights[i]
+                         ? std::make_unique<LightPass>(setup, scene_box,
+                                                       setup.request.scene->lights[i], plan.fits[i])
+                         : nullptr);
   return lights;
 }
 
@@ -72,7 +74,7 @@ FrameRun::FrameRun(Renderer::State& state, const RenderRequest& request,
       plan_(checked(make_plan(request, parameters, state.boxes_of(request.scene)),
                     state.device.limits())),
       setup_(make_setup(state, request, parameters, plan_, window)),
-      lights_(make_lights(setup_, plan_)),
+      lights_(make_lights(setup_, around(state.boxes_of(request.scene)), plan_)),
       targets_(state.device, window, setup_.side, wanted_targets(in_rounds)) {}
 
 void FrameRun::look_through(const Camera& camera) {

@@ -22,10 +22,11 @@ std::uint32_t batch_count(std::size_t points) {
 
 }  // namespace
 
-LightPass::LightPass(const FrameSetup& setup, const Light& light, const LightFit& fit)
+LightPass::LightPass(const FrameSetup& setup, const Bounds& scene_box, const Light& light,
+                     const LightFit& fit)
     : setup_(setup),
       light_(world_light(light, setup.scene.origin())),
-      input_(technique_input(setup.request, light, setup.camera, setup.parameters)),
+      input_(technique_input(setup.request, scene_box, light, setup.camera, setup.parameters)),
       technique_(setup.request.technique->create()),
       fit_(fit) {
   technique_->require(input_, needs_);

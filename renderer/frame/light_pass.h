@@ -30,7 +30,8 @@ class LightPass {
  public:
   /// Creates the technique's instance and asks what it requires; throws `unsupported`. `fit`
   /// outlives this.
-  LightPass(const FrameSetup& setup, const Light& light, const LightFit& fit);
+  LightPass(const FrameSetup& setup, const Bounds& scene_box, const Light& light,
+            const LightFit& fit);
 
   const Requirements& needs() const { return needs_; }
   /// Whether its error is known: it is exact, or its points come in scrambles.

@@ -48,7 +48,7 @@ class Planner {
       : request_(request), rules_(request.rules), scene_(*request.scene), boxes_(boxes) {
     camera_ = through != nullptr ? through : &scene_.cameras[find_camera(scene_, request.camera)];
     if (!request.earlier_cameras.empty()) rules_.lights = rules_.surfaces = rules_.casters = false;
-    plan_.needs = requirements_of(request, parameters);
+    plan_.needs = requirements_of(request, parameters, boxes);
   }
 
   Plan make() {
@@ -228,14 +228,15 @@ class Planner {
 }  // namespace
 
 std::vector<Requirements> requirements_of(const RenderRequest& request,
-                                          const ParameterValues& parameters) {
+                                          const ParameterValues& parameters,
+                                          const std::vector<Bounds>& boxes) {
   const Scene& scene = *request.scene;
   const Camera& camera = scene.cameras[find_camera(scene, request.camera)];
   std::vector<Requirements> list;
   for (const Light& light : scene.lights) {
     list.emplace_back();
-    request.technique->create()->require(technique_input(request, light, camera, parameters),
-                                         list.back());
+    request.technique->create()->require(
+        technique_input(request, around(boxes), light, camera, parameters), list.back());
   }
   return list;
 }
@@ -244,8 +245,7 @@ std::vector<Bounds> instance_boxes(const Scene& scene) {
   std::vector<Bounds> boxes;
   for (const Instance& instance : scene.instances)
     boxes.push_back(instance_bounds(scene, instance));
-  Bounds all;
-  for (const Bounds& box : boxes) all.add(box);
+  const Bounds all = around(boxes);
   if (all.empty()) return boxes;
   const glm::dvec3 eye = scene.cameras.front().position;
   for (Bounds& box : boxes) {

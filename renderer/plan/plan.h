@@ -49,9 +49,11 @@ struct Plan {
 /// Boxes of all instances, world space, in order; padded for the rounding of single precision.
 std::vector<Bounds> instance_boxes(const Scene& scene);
 
-/// What the technique of a request requires of each light. Passes on its `unsupported`.
+/// What the technique of a request requires of each light; `boxes` are the scene's
+/// instance_boxes(). Passes on its `unsupported`.
 std::vector<Requirements> requirements_of(const RenderRequest& request,
-                                          const ParameterValues& parameters);
+                                          const ParameterValues& parameters,
+                                          const std::vector<Bounds>& boxes);
 
 /// The plan of a request. `parameters` are complete. Asks the technique what each light requires
 /// and passes on its `unsupported`. `through`: a camera in place of the picture's, or null. Where

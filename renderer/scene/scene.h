@@ -29,6 +29,13 @@ struct Bounds {
   double radius() const { return empty() ? 0.0 : 0.5 * glm::length(high - low); }
 };
 
+/// Box around boxes.
+inline Bounds around(const std::vector<Bounds>& boxes) {
+  Bounds all;
+  for (const Bounds& box : boxes) all.add(box);
+  return all;
+}
+
 /// Colour picture, sRGB-encoded RGBA, row 0 on top (v = 0).
 struct Texture {
   std::string name;

@@ -168,7 +168,7 @@ void require_image(const TechniqueInput& input, const std::string& needed) {
 }
 
 std::uint32_t view_count(const TechniqueInput& input) {
-  return chosen_layout(input.parameters).view_count(input.light, input.parameters);
+  return chosen_layout(input.parameters).view_count(input);
 }
 
 void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
@@ -203,8 +203,8 @@ DepthMap::Views DepthMap::fit_views(PrepareContext& context, const MapUse& use) 
     return seen_.bounds(context, asked, by_depth);
   };
   Views views = chosen_layout(parameters)
-                    .fit({context.scene, context.light, context.fit, context.picture_camera,
-                          parameters, use, size, seen, context.notes});
+                    .fit({context.scene, context.input.scene_box, context.light, context.fit,
+                          context.picture_camera, parameters, use, size, seen, context.notes});
   if (choice_of(parameters, "range") == "fixed")
     fix_ranges(views, context.scene, context.fit);
   else if (choice_of(parameters, "range") == "visible" && keeps_image(parameters))

@@ -62,7 +62,7 @@ bool may_warp(const Layout& layout, const TechniqueInput& input) {
 std::string view_definitions(const TechniqueInput& input) {
   const Layout& layout = chosen_layout(input.parameters);
   std::string lines;
-  if (layout.view_count(input.light, input.parameters) == 1) lines += "#define ONE_VIEW\n";
+  if (layout.view_count(input) == 1) lines += "#define ONE_VIEW\n";
   if (!may_warp(layout, input)) lines += "#define UNWARPED\n";
   return lines;
 }
@@ -70,9 +70,7 @@ std::string view_definitions(const TechniqueInput& input) {
 void check_views(const TechniqueInput& input, const std::vector<shader::MapView>& views) {
   const Layout& layout = chosen_layout(input.parameters);
   const bool warped = std::any_of(views.begin(), views.end(), is_warped);
-  if (views.size() == layout.view_count(input.light, input.parameters) &&
-      (!warped || may_warp(layout, input)))
-    return;
+  if (views.size() == layout.view_count(input) && (!warped || may_warp(layout, input))) return;
   throw std::logic_error("layout " + layout.id + " fitted other views than it told of");
 }
 

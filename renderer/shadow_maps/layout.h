@@ -23,6 +23,7 @@ struct MapUse {
 /// What a layout fits its views to.
 struct ViewFitting {
   const GpuScene& scene;
+  const Bounds& scene_box;  ///< as TechniqueInput's
   const WorldLight& light;
   const LightFit& fit;
   const CameraMatrices& camera;  ///< of the whole picture, whatever window of it is drawn
@@ -51,7 +52,7 @@ struct Layout {
   std::string meaning;                ///< a few words in that parameter's description
   std::vector<Parameter> parameters;  ///< its own; without a variant, so that none costs a compile
   std::vector<LightKind> serves;      ///< kinds of light that it is for
-  std::function<std::uint32_t(const Light&, const ParameterValues&)> view_count;
+  std::function<std::uint32_t(const TechniqueInput&)> view_count;
   std::function<std::vector<shader::MapView>(const ViewFitting&)> fit;
   std::function<bool(const Light&, const ParameterValues&)>
       warps;                   ///< whether views may be warped; without it none is

@@ -105,7 +105,7 @@ void check_fits(const CanonicalRequest& canonical, const std::set<std::string>& 
   const ParameterValues parameters =
       complete_parameters(request.technique->parameters, request.parameters);
   try {
-    check_memory(requirements_of(request, parameters), limits);
+    check_memory(requirements_of(request, parameters, instance_boxes(*request.scene)), limits);
   } catch (const Error&) {
     // Lights that reach nothing are not drawn; only the plan knows them, and takes longer.
     check_memory(make_plan(request, parameters, instance_boxes(*request.scene)), limits);

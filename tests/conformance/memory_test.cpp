@@ -22,7 +22,11 @@ RenderRequest request_for(const std::string& technique, ParameterValues paramete
                           LightKind light = LightKind::spot) {
   const techniques::Resolved resolved = techniques::resolve(technique, parameters);
   Scene scene = test::box_on_ground();
-  for (Light& each : scene.lights) each.kind = light;
+  for (Light& each : scene.lights) {
+    each.kind = light;
+    // From within the scene it needs views all around.
+    if (light == LightKind::point) each.position = {0.9, 0.4, 0.9};
+  }
   RenderRequest request;
   request.scene = std::make_shared<const Scene>(std::move(scene));
   request.technique = resolved.technique;
@@ -44,7 +48,8 @@ std::uint64_t bytes_of(const Cost& cost, const std::string& name) {
 /// Every need against the ledger of what was really allocated.
 void expect_needs_as_allocated(const RenderRequest& request, const std::string& what) {
   std::map<std::string, std::uint64_t> declared;
-  for (const Requirements& needs : requirements_of(request, complete(request)))
+  for (const Requirements& needs :
+       requirements_of(request, complete(request), instance_boxes(*request.scene)))
     for (const MemoryNeed& need : needs.memory) declared[need.name] += need.bytes;
   if (declared.empty()) return;
   const Cost cost = renderer().render(request).cost;
@@ -100,7 +105,8 @@ TEST(Memory, beyond_the_device_is_refused_before_anything_is_allocated) {
     const RenderRequest request =
         request_for(technique.id, {{"map_size", std::int64_t{16384}}}, LightKind::point);
     std::uint64_t bytes = 0;
-    for (const Requirements& needs : requirements_of(request, complete(request)))
+    for (const Requirements& needs :
+         requirements_of(request, complete(request), instance_boxes(*request.scene)))
       for (const MemoryNeed& need : needs.memory) bytes += need.bytes;
     if (bytes <= limits.light) continue;
     ++refused;

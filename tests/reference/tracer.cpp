@@ -204,6 +204,7 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
   const WorldLight world = world_light(light, scene_->origin());
   const ParameterValues none;
   const TechniqueInput input{scene_->scene(),
+                             {},
                              light,
                              scene_->scene().cameras.front(),
                              none,

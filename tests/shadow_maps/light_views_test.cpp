@@ -7,6 +7,7 @@
 
 #include "drawing.h"
 #include "hard_truth.h"
+#include "renderer/shadow_maps/views/light_view.h"
 #include "scenes.h"
 #include "tests/kept_pictures/kept_pictures.h"
 
@@ -62,6 +63,41 @@ TEST(LightViews, a_point_light_casts_shadows_in_all_directions) {
   const auto error = tests::visibility_error(result.visibility, truth, result.judged);
   EXPECT_LT(error.false_shadow, 0.01);
   EXPECT_LT(error.missing_shadow, 0.01);
+}
+
+TEST(LightViews, a_box_outside_is_held_by_the_narrowest_square_turned_along_its_edges) {
+  const Bounds box{{-1, -1, -1}, {1, 1, 1}};
+  const auto ahead = shadow_maps::view_of_box(box, {0, 0, 10});
+  ASSERT_TRUE(ahead);
+  EXPECT_DOUBLE_EQ(ahead->tangent, 1.0 / 9.0);  // of the nearer face's corners
+  // Over an edge: its ends lie 1 m up and 10 sqrt(2) - sqrt(2) ahead, the sides' sqrt(2) across.
+  const auto askew = shadow_maps::view_of_box(box, {10, 0, 10});
+  ASSERT_TRUE(askew);
+  EXPECT_NEAR(askew->tangent, 0.1, 1e-12);
+  // A right angle is as wide as one of six views; nearer they are narrower.
+  EXPECT_TRUE(shadow_maps::view_of_box(box, {0, 0, 2.001}));
+  EXPECT_FALSE(shadow_maps::view_of_box(box, {0, 0, 1.999}));
+  EXPECT_FALSE(shadow_maps::view_of_box(box, {0, 0, 0.5}));
+  EXPECT_FALSE(shadow_maps::view_of_box({}, {0, 0, 10}));
+}
+
+TEST(LightViews, a_point_light_far_from_the_scene_has_one_view_of_it) {
+  Scene scene = floor_and_ceiling();
+  for (int i = 0; i < 5; ++i) add_box(scene, {i - 2.5, 0.001, -0.8}, {i - 2.1, 0.6 + 0.1 * i, 0.7});
+  Light light = lamp({0.5, 1.0, 0.2}, 45);
+  light.kind = LightKind::point;
+  scene.lights.push_back(light);
+  constexpr std::uint64_t map_bytes = 1048576;
+  EXPECT_EQ(draw(scene, "shadow-map").cost.technique_memory[0].bytes, 6 * map_bytes);
+  for (const double distance : {20.0, 300.0, 1e5}) {
+    scene.lights[0].position = distance * glm::normalize(glm::dvec3(0.5, 1.0, 0.3));
+    const ImageF truth = HardTruth(scene).visibility("", 200, 200);
+    const RenderResult result = draw(scene, "shadow-map", {}, 200);
+    EXPECT_EQ(result.cost.technique_memory[0].bytes, map_bytes) << distance;
+    const auto error = tests::visibility_error(result.visibility, truth, result.judged);
+    EXPECT_LT(error.false_shadow, 0.005) << distance;
+    EXPECT_LT(error.missing_shadow, 0.005) << distance;
+  }
 }
 
 TEST(LightViews, a_directional_light_shadows_along_its_direction) {

@@ -108,8 +108,7 @@ Layout describe_cascaded_sdsm() {
               "directional lights",
           .parameters = split_parameters(),
           .serves = {LightKind::directional},
-          .view_count = [](const Light&,
-                           const ParameterValues& parameters) { return cascade_count(parameters); },
+          .view_count = [](const TechniqueInput& input) { return cascade_count(input.parameters); },
           .fit = fit_to_samples,
           .warps = always_warps,
           .reads_samples = true};

@@ -111,8 +111,7 @@ Layout describe_cascaded() {
               "lights",
           .parameters = cascade_parameters(),
           .serves = {LightKind::directional},
-          .view_count = [](const Light&,
-                           const ParameterValues& parameters) { return cascade_count(parameters); },
+          .view_count = [](const TechniqueInput& input) { return cascade_count(input.parameters); },
           .fit = fit_cascades};
 }
 

@@ -30,7 +30,7 @@ Layout describe_light_space_perspective() {
           .meaning = "one view bent so that near places get more texels, for directional lights",
           .parameters = {distance},
           .serves = {LightKind::directional},
-          .view_count = [](const Light&, const ParameterValues&) { return 1u; },
+          .view_count = [](const TechniqueInput&) { return 1u; },
           .fit = fit_light_space_perspective,
           .warps = always_warps};
 }

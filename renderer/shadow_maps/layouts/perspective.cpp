@@ -250,8 +250,8 @@ Layout describe_perspective() {
                                  "Fit the view to what is seen of the scene; otherwise to all that "
                                  "the camera could see.")},
           .serves = {LightKind::directional, LightKind::spot},
-          .view_count = [](const Light& light,
-                           const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
+          .view_count =
+              [](const TechniqueInput& input) { return has_six_views(input.light) ? 6u : 1u; },
           .fit = fit_perspective,
           .warps = always_warps};
 }

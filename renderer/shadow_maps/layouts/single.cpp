@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "renderer/shadow_maps/views/light_view.h"
 #include "renderer/shadow_maps/views/warp.h"
@@ -9,6 +10,13 @@ namespace {
 
 bool follows_camera(const Light& light, const ParameterValues& parameters) {
   return is_at_infinity(light) && choice_of(parameters, "focus") == "seen";
+}
+
+/// For a light that shines around and stands far outside of the scene.
+std::optional<AimedView> aimed_view(const ViewFitting& fitting) {
+  const Light& light = *fitting.light.source;
+  if (!has_six_views(light)) return std::nullopt;
+  return view_of_box(fitting.scene_box, light.position);
 }
 
 std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
@@ -26,6 +34,8 @@ std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
     const glm::dvec3 origin =
         center.x * axes.right() + center.y * axes.up + bounds.low.z * axes.forward;
     views.push_back(make_view(origin, axes, half, false, fitting.size));
+  } else if (const auto aimed = aimed_view(fitting)) {
+    views = {make_view(light.position, aimed->axes, aimed->tangent * widen, true, fitting.size)};
   } else {
     views = views_around(light, widen, fitting.size);
   }
@@ -41,11 +51,16 @@ Layout describe_single() {
       "focus", "scene", {"scene", "seen"},
       "What a directional light's view covers: the whole scene, or what the camera sees of it.");
   return {.id = "single",
-          .meaning = "one view over the light's cone or the scene, six around a point light",
+          .meaning =
+              "one view over the light's cone or the scene, six around a point light among things",
           .parameters = {focus},
           .serves = {LightKind::spot, LightKind::directional, LightKind::point},
-          .view_count = [](const Light& light,
-                           const ParameterValues&) { return has_six_views(light) ? 6u : 1u; },
+          .view_count =
+              [](const TechniqueInput& input) {
+                const bool six = has_six_views(input.light) &&
+                                 !view_of_box(input.scene_box, input.light.position);
+                return six ? 6u : 1u;
+              },
           .fit = fit_single,
           .warps = follows_camera};
 }

@@ -41,7 +41,7 @@ Layout describe_trapezoidal() {
                          share_parameter("focus_share", 0.8, 0.99,
                                          "Share of the map that the part in focus gets.")},
           .serves = {LightKind::directional},
-          .view_count = [](const Light&, const ParameterValues&) { return 1u; },
+          .view_count = [](const TechniqueInput&) { return 1u; },
           .fit = fit_trapezoidal,
           .warps = always_warps};
 }

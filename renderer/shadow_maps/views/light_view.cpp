@@ -98,10 +98,36 @@ shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double
 namespace {
 /// Half angle of the widest cone that is served by one view, degrees.
 constexpr double widest_single_view = 75.0;
+constexpr double tangent_of_six_views = 1.0;  ///< of the half angle of each
 }  // namespace
 
 bool has_six_views(const Light& light) {
   return beam_half_angle(light) > widest_single_view;
+}
+
+std::optional<AimedView> view_of_box(const Bounds& box, const glm::dvec3& place) {
+  if (box.empty()) return std::nullopt;
+  const glm::dvec3 towards = box.center() - place;
+  // Every corner lies ahead.
+  if (!(glm::length(towards) > box.radius())) return std::nullopt;
+  const glm::dvec3 forward = glm::normalize(towards);
+  AimedView best{{forward, {}}, std::numeric_limits<double>::infinity()};
+  // Turned along each of the box's edges: a square holds a box that lies askew in it worse.
+  for (int edge = 0; edge < 3; ++edge) {
+    glm::dvec3 along(0.0);
+    along[edge] = 1.0;
+    const ViewAxes axes{forward, across(forward, along)};
+    double tangent = 0.0;
+    visit_clipped_corners(box, {}, [&](const glm::dvec3& corner) {
+      const glm::dvec3 offset = corner - place;
+      const double ahead = glm::dot(offset, forward);
+      tangent = std::max({tangent, std::abs(glm::dot(offset, axes.right())) / ahead,
+                          std::abs(glm::dot(offset, axes.up)) / ahead});
+    });
+    if (tangent < best.tangent) best = {axes, tangent};
+  }
+  if (best.tangent > tangent_of_six_views) return std::nullopt;
+  return best;
 }
 
 std::vector<shader::MapView> views_around(const WorldLight& light, double widen, double size) {
@@ -110,7 +136,7 @@ std::vector<shader::MapView> views_around(const WorldLight& light, double widen,
   if (has_six_views(*light.source)) {
     axes = {{{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
             {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}}};
-    tangent = 1.0;
+    tangent = tangent_of_six_views;
   }
   std::vector<shader::MapView> views;
   for (const ViewAxes& view_axes : axes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "renderer/shadow_maps/layout.h"
@@ -22,6 +23,16 @@ shader::MapView make_view(const glm::dvec3& origin, const ViewAxes& axes, double
 /// Whether a light shines so wide that six views around it are needed: one view of it would have
 /// few texels left for its middle, and none beyond a right angle.
 bool has_six_views(const Light& light);
+
+/// A square view from a light, and the tangent of its half angle.
+struct AimedView {
+  ViewAxes axes;
+  double tangent;
+};
+
+/// The view that holds a box, where none of six views around the place would be narrower: one then
+/// serves better than six. None where the place is within the box or too near.
+std::optional<AimedView> view_of_box(const Bounds& box, const glm::dvec3& place);
 
 /// The view over a spot light's cone, or the six around a light that needs them; `widen` as wide.
 std::vector<shader::MapView> views_around(const WorldLight& light, double widen, double size);

@@ -132,8 +132,7 @@ Layout tile_layout(const std::string& id, const std::string& meaning, TileRankin
           .meaning = meaning,
           .parameters = tile_parameters(),
           .serves = {LightKind::directional},
-          .view_count = [](const Light&,
-                           const ParameterValues&) { return std::uint32_t{shader::tile_count}; },
+          .view_count = [](const TechniqueInput&) { return std::uint32_t{shader::tile_count}; },
           .fit = place_tiles,
           .reads_samples = true,
           .ranking = ranking};
