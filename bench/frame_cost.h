@@ -27,6 +27,7 @@ inline FrameCost frame_cost(Renderer& renderer, RenderRequest request, std::uint
   renderer.render(request);
   const double between = worked_ms();
   request.frames = 2 + frames;
+  request.settle = true;
   Cost cost = renderer.render(request).cost;
   return {(worked_ms() - between - (between - start)) / frames, std::move(cost)};
 }

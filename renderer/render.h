@@ -80,7 +80,7 @@ struct RenderRequest {
   bool uncertainty = false;  ///< also tell the error that finitely many light points leave
   std::string diagnostic;    ///< name of a diagnostic picture of the technique, or empty
   std::uint32_t frames = 1;  ///< counted frames; above 1 one uncounted frame goes first
-  /// Before the counted frames draw others until a GPU's clocks are up and times steady.
+  /// Counted frames wait until a GPU's clocks are up, and it is told if they fell meanwhile.
   bool settle = false;
   PlanRules rules;
 };
@@ -107,8 +107,10 @@ struct Cost {
   double p95_ms = 0.0;
   double spread = 0.0;  ///< half the distance between quartiles, as a share of the median
   std::uint32_t frames = 0;
-  bool settled = true;          ///< false where `settle` was asked for and times never were steady
+  bool settled = true;          ///< false where `settle` was asked for and clocks were not up
   double wall_median_ms = 0.0;  ///< submission to fence
+  double timing_ms = 0.0;       ///< wall time of all counted frames
+  double settling_ms = 0.0;     ///< and until a GPU's clocks were up, before them
   double create_ms = 0.0;       ///< pipelines, buffers, uploads and the uncounted frame
   std::vector<PassCost> passes;
   std::vector<ResourceCost> technique_memory;  ///< what the technique asked for over `none`

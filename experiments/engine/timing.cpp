@@ -5,8 +5,6 @@
 namespace penumbra::experiments {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 double frame_ms(const Cost& cost) {
   return std::max(cost.median_ms, cost.wall_median_ms);
 }
@@ -20,14 +18,10 @@ std::uint32_t frames_within(const TimingBudget& budget, double each_ms) {
 }  // namespace
 
 RenderResult FrameTimer::time(RenderRequest request) {
-  RenderResult result =
-      renderer_.device().type == "cpu" ? time_on_processor(request) : time_on_gpu(request);
-  last_work_ = Clock::now();
-  return result;
+  return renderer_.device().type == "cpu" ? time_on_processor(request) : time_on_gpu(request);
 }
 
 RenderResult FrameTimer::time_on_processor(RenderRequest& request) {
-  request.settle = false;
   request.frames = 1;
   RenderResult once = renderer_.render(request);
   const double first_ms = frame_ms(once.cost);
@@ -38,14 +32,10 @@ RenderResult FrameTimer::time_on_processor(RenderRequest& request) {
 }
 
 RenderResult FrameTimer::time_on_gpu(RenderRequest& request) {
-  const bool rested =
-      !last_work_ || std::chrono::duration<double, std::milli>(Clock::now() - *last_work_).count() >
-                         budget_.rest_ms;
-  request.settle = rested;
+  request.settle = true;
   request.frames = budget_.fewest + 2;
   RenderResult result = renderer_.render(request);
-  if (rested || result.cost.spread <= budget_.wide_spread) return result;
-  request.settle = true;
+  if (result.cost.settled && result.cost.spread <= budget_.wide_spread) return result;
   request.frames = budget_.most;
   return renderer_.render(request);
 }

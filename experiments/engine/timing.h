@@ -1,8 +1,5 @@
 #pragma once
 
-#include <chrono>
-#include <optional>
-
 #include "renderer/render.h"
 
 namespace penumbra::experiments {
@@ -13,12 +10,11 @@ struct TimingBudget {
   std::uint32_t fewest = 3;  ///< frames, whatever they take, so that a spread is known ...
   std::uint32_t most = 9;
   double longest_ms = 4000.0;  ///< ... unless one takes longer: it is timed the once it is drawn
-  double wide_spread = 0.05;   ///< times of a GPU that scatter more are taken again once settled
-  double rest_ms = 100.0;      ///< a GPU that had no work for so long has to settle first
+  double wide_spread = 0.05;   ///< times of a GPU that scatter more are taken again
 };
 
-/// Frames of one request, timed. A processor draws one frame to learn what it costs; a GPU, whose
-/// clocks fall while it rests, is kept busy from run to run instead and settles only after a rest.
+/// Frames of one request, timed. A processor draws one frame to learn what it costs; times of a
+/// GPU whose clocks fell meanwhile are taken again.
 class FrameTimer {
  public:
   FrameTimer(Renderer& renderer, const TimingBudget& budget)
@@ -33,7 +29,6 @@ class FrameTimer {
 
   Renderer& renderer_;
   TimingBudget budget_;
-  std::optional<std::chrono::steady_clock::time_point> last_work_;
 };
 
 }  // namespace penumbra::experiments

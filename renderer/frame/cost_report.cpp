@@ -45,6 +45,7 @@ Cost CostReport::summary() const {
         0.5 * (quantile(frame_times_, 0.75) - quantile(frame_times_, 0.25)) / cost.median_ms;
   cost.frames = static_cast<std::uint32_t>(frame_times_.size());
   cost.wall_median_ms = quantile(wall_times_, 0.5);
+  cost.timing_ms = std::accumulate(wall_times_.begin(), wall_times_.end(), 0.0);
   for (const Pass& pass : passes_) {
     PassCost out;
     out.name = pass.name;

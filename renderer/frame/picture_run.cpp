@@ -77,7 +77,7 @@ RenderResult PictureRun::run() {
   take_up();
   bool settled = true;
   for (; frame_index_ < frames_total_; ++frame_index_) {
-    if (frame_index_ == warm_up && request_.settle) settled = settle();
+    if (frame_index_ == warm_up) settled = wait_for_clocks();
     if (frame_index_ > 0) now_ = {};
     state_.recorder.clear_records();
     draw_frame(frame_index_);
@@ -87,8 +87,10 @@ RenderResult PictureRun::run() {
   }
   if (follows_path()) hand_over(std::move(now_.points), now_.visibility, now_.judged);
   RenderResult result;
+  if (tells_clocks()) settled = settled && state_.yardstick.clocks_are_up(state_);
   result.cost = costs_.summary();
   result.cost.settled = settled;
+  result.cost.settling_ms = settling_ms_;
   result.cost.create_ms = create_ms;
   result.cost.technique_memory = frame_.technique_memory();
   result.picture = std::move(now_.picture);
@@ -134,19 +136,17 @@ void PictureRun::draw_earlier_cameras() {
   frame_.look_through(own);
 }
 
-bool PictureRun::settle() {
+bool PictureRun::tells_clocks() const {
   // A processor has no clocks that fall while it waits for the next picture.
-  if (state_.device.info.type == "cpu") return true;
-  // Nothing is read back here, so that the device has no rest between frames.
-  SteadyTimes times;
-  while (!times.steady() && !times.given_up()) {
-    state_.recorder.clear_records();
-    const Clock::time_point start = Clock::now();
-    frame_.draw(windows_.front(), rounds_.front(), frame_index_, false, {});
-    times.add(device_ms(state_.recorder.records()),
-              std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-  }
-  return times.steady();
+  return request_.settle && state_.device.info.type != "cpu";
+}
+
+bool PictureRun::wait_for_clocks() {
+  if (!tells_clocks()) return true;
+  const Clock::time_point start = Clock::now();
+  const bool up = state_.yardstick.raise_clocks(state_);
+  settling_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return up;
 }
 
 void PictureRun::draw_frame(std::uint32_t index) {

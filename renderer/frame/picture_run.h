@@ -34,9 +34,10 @@ class PictureRun {
     void visit(Archive& archive);
   };
 
-  /// Draws frames that do not count until their times are steady (SteadyTimes); false where they
-  /// never were.
-  bool settle();
+  /// Whether a GPU's clocks are of interest.
+  bool tells_clocks() const;
+  /// False where they did not rise in time.
+  bool wait_for_clocks();
   /// Draws a frame of each camera that goes before the picture's.
   void draw_earlier_cameras();
   void draw_frame(std::uint32_t index);
@@ -72,6 +73,7 @@ class PictureRun {
   Progress now_;
   double taken_up_at_ = 0.0;  ///< share of the picture
   CostReport costs_;
+  double settling_ms_ = 0.0;
 };
 
 }  // namespace penumbra

@@ -3,6 +3,7 @@
 #include <list>
 
 #include "renderer/frame/gpu_scene.h"
+#include "renderer/frame/yardstick.h"
 #include "renderer/render.h"
 #include "renderer/vulkan/commands.h"
 
@@ -24,6 +25,7 @@ struct Renderer::State {
   vulkan::ConstantArena constants;
   vulkan::Buffer faults;
   std::uint64_t most_window_samples;  ///< as RendererOptions
+  Yardstick yardstick;
 
  private:
   struct Boxes {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <future>
 
 #include "renderer/error.h"
 #include "renderer/metrics/frame_change.h"
@@ -95,6 +97,11 @@ json cost_to_json(const Cost& cost) {
           {"memory", {{"over_none_bytes", bytes}, {"resources", resources}}}};
 }
 
+/// Wall time of all frames that were drawn to be timed.
+double drawing_ms(const Cost& cost) {
+  return cost.settling_ms + cost.timing_ms;
+}
+
 /// Maps the parts of a task onto one bar.
 class Parts {
  public:
@@ -132,7 +139,11 @@ Cost time_frames(Renderer& renderer, const Task& task, const RenderResult& first
 Cost time_baseline(Renderer& renderer, const Task& task, const Cost& cost,
                    const std::function<void(double)>& progress) {
   const CanonicalRequest baseline = baseline_of(task.request);
-  if (baseline.technique.technique == task.request.technique.technique) return cost;
+  if (baseline.technique.technique == task.request.technique.technique) {
+    Cost own = cost;
+    own.timing_ms = own.settling_ms = 0.0;  // nothing more is drawn
+    return own;
+  }
   RenderRequest request = to_render_request(baseline);
   request.frames =
       std::max(fewest_baseline_frames,
@@ -150,6 +161,7 @@ json measure_cost(Renderer& renderer, const Task& task, const RenderResult& firs
   json& frame = document.at("frame_ms");
   frame["settled"] = cost.settled && baseline.settled;
   frame["none_median"] = baseline.median_ms;
+  document["timing_ms"] = drawing_ms(cost) + drawing_ms(baseline);
   frame["over_none"] = number_or_null(cost.median_ms / baseline.median_ms);
   if (!frame.at("settled").get<bool>())
     notes.push_back("the device's times never settled: do not compare them");
@@ -192,9 +204,12 @@ json path_difference(Renderer& renderer, const Task& task, const metrics::FrameC
 
 json measure_quality(const Task& task, const RenderResult& drawn, const Image8& reference,
                      std::vector<std::string>& notes) {
-  const ImageF visibility = scenes::decode_exr(task.reference.visibility);
-  const metrics::VisibilityError error =
-      metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
+  auto judging = std::async(std::launch::async, [&task, &drawn] {
+    const ImageF visibility = scenes::decode_exr(task.reference.visibility);
+    return metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
+  });
+  const double flip = metrics::flip(drawn.picture, reference);
+  const metrics::VisibilityError error = judging.get();
   if (task.reference.id == task.request.id) notes.push_back("this picture is the reference itself");
   if (error.judged == 0) notes.push_back("no pixel faces a light: visibility was not judged");
   const auto judged = [&error](double value) { return error.judged ? json(value) : json(nullptr); };
@@ -204,12 +219,28 @@ json measure_quality(const Task& task, const RenderResult& drawn, const Image8& 
           // Equal pictures have no finite ratio; JSON has no infinity.
           {"psnr", number_or_null(metrics::psnr(drawn.picture, reference))},
           {"ssim", ssim_or_null(drawn.picture, reference, notes)},
-          {"flip", metrics::flip(drawn.picture, reference)},
+          {"flip", flip},
           {"visibility_rms", judged(error.rms)},
           {"visibility_bias", judged(error.bias)},
           {"false_shadow", judged(error.false_shadow)},
           {"missing_shadow", judged(error.missing_shadow)}};
 }
+
+/// Files that are encoded beside each other and beside the judging of their picture. What they are
+/// made of outlives this.
+class FilesBeingMade {
+ public:
+  void make(const char* name, std::function<std::string()> encode) {
+    files_.emplace_back(name, std::async(std::launch::async, std::move(encode)));
+  }
+  /// Waits for them.
+  void take(std::map<std::string, std::string>& files) {
+    for (auto& [name, file] : files_) files[name] = file.get();
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::future<std::string>>> files_;
+};
 
 }  // namespace
 
@@ -261,20 +292,21 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   result.notes.insert(result.notes.begin(), drawn.notes.begin(), drawn.notes.end());
   result.notes.insert(result.notes.begin(), of_scene.begin(), of_scene.end());
 
+  Image8 reference;
+  FilesBeingMade files;
   const Image8& shown = request.diagnostic.empty() ? drawn.picture : drawn.diagnostic;
-  if (wanted(want::image)) result.artefacts[want::image] = scenes::encode_png(shown);
-  if (wanted(want::linear)) result.artefacts[want::linear] = scenes::encode_exr(drawn.linear);
+  if (wanted(want::image)) files.make(want::image, [&] { return scenes::encode_png(shown); });
+  if (wanted(want::linear))
+    files.make(want::linear, [&] { return scenes::encode_exr(drawn.linear); });
   if (wanted(want::visibility))
-    result.artefacts[want::visibility] = scenes::encode_exr(drawn.visibility, drawn.light_names);
-
-  if (needs_reference(task.wants)) {
-    const Image8 reference = scenes::decode_picture(task.reference.image);
-    if (wanted(want::error_map))
-      result.artefacts[want::error_map] =
-          scenes::encode_png(metrics::error_map(drawn.picture, reference));
-    if (wanted(want::quality))
-      result.quality = measure_quality(task, drawn, reference, result.notes);
-  }
+    files.make(want::visibility,
+               [&] { return scenes::encode_exr(drawn.visibility, drawn.light_names); });
+  if (needs_reference(task.wants)) reference = scenes::decode_picture(task.reference.image);
+  if (wanted(want::error_map))
+    files.make(want::error_map,
+               [&] { return scenes::encode_png(metrics::error_map(drawn.picture, reference)); });
+  if (wanted(want::quality)) result.quality = measure_quality(task, drawn, reference, result.notes);
+  files.take(result.artefacts);
   if (along_path)
     result.quality["frame_difference"] =
         path_difference(renderer, task, change, request.earlier_cameras, parts.next());

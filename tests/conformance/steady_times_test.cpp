@@ -17,10 +17,10 @@ struct Outcome {
   double last_ms = 0.0;
 };
 
-/// Frames of `ms(device time so far)` until the times are steady or given up; each takes `cpu_ms`
-/// of the CPU besides.
-Outcome wait(const std::function<double(double)>& ms, double cpu_ms = 0.0) {
-  SteadyTimes times;
+/// Pieces of work of `ms(device time so far)` until the times are steady or given up; each takes
+/// `cpu_ms` of the CPU besides.
+Outcome wait(const std::function<double(double)>& ms, double cpu_ms = 0.0, double best_ms = 0.0) {
+  SteadyTimes times(best_ms);
   Outcome outcome;
   while (!times.steady() && !times.given_up()) {
     outcome.last_ms = ms(outcome.busy_ms);
@@ -68,6 +68,17 @@ TEST(SteadyTimes, gives_up_on_times_that_never_agree) {
   const Outcome slow = wait([&](double) { return 4.0 + 0.2 * (frame++); }, 100.0);
   EXPECT_FALSE(slow.steady);
   EXPECT_LE(slow.frames, 30);
+}
+
+TEST(SteadyTimes, know_at_once_that_clocks_are_up_where_it_is_known_what_they_are) {
+  const Outcome up = wait([](double) { return 1.004; }, 0.0, 1.0);
+  EXPECT_TRUE(up.steady);
+  EXPECT_EQ(up.frames, 3);
+  // A level below the best, however steady, is not believed.
+  const Outcome rises = wait([](double busy_ms) { return busy_ms < 900 ? 1.8 : 1.0; }, 0.0, 1.0);
+  EXPECT_TRUE(rises.steady);
+  EXPECT_GE(rises.busy_ms, 900.0);
+  EXPECT_FALSE(wait([](double) { return 1.1; }, 0.0, 1.0).steady);
 }
 
 TEST(SteadyTimes, believes_two_equal_frames_that_take_long) {
