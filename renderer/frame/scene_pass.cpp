@@ -93,8 +93,11 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     if (textured)
       bindings.texture("surface_texture", scene.texture_of(first.material),
                        vulkan::Sampling::linear_repeat);
-    commands.bind(pipelines.graphics(textured ? textured_source : source, state), bindings);
-    commands.constants(glm::uvec2(first.material, first.masked ? 1u : 0u));
+    vulkan::ProgramSource program = textured ? textured_source : source;
+    // A program that may discard is run before depth is tested: for masks alone.
+    if (first.masked) program.preamble += "#define MASKED\n";
+    commands.bind(pipelines.graphics(program, state), bindings);
+    commands.constants(first.material);
     commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
     i = next;

@@ -14,7 +14,7 @@ layout(std430) readonly buffer MaterialBlock { MaterialData materials[]; };
 #ifdef TEXTURED
 uniform sampler2D surface_texture;
 #endif
-layout(push_constant) uniform DrawBlock { uint material; uint has_holes; } draw;
+layout(push_constant) uniform DrawBlock { uint material; } draw;
 
 // Textures and materials arrive decoded once; the gamma parameter may ask for none or twice.
 vec3 decoded(vec3 linear_color) {
@@ -40,7 +40,9 @@ void main() {
 #endif
   color *= texel;
 #endif
-  if (draw.has_holes != 0u && color.a < material.surface.z) discard;
+#ifdef MASKED
+  if (color.a < material.surface.z) discard;
+#endif
 
   // The facet's normal from its own plane; gl_PrimitiveID would give it exactly, but lavapipe loses it
   // in clipped triangles. Both normals look towards the viewer.

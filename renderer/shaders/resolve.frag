@@ -34,7 +34,8 @@ void main() {
 #ifdef WITH_LINEAR
   out_linear = vec4(color, 1.0);
 #endif
-  bool finite = !any(isnan(color)) && !any(isinf(color));
+  // Some devices blend what is infinite to the greatest float, 3.4e38.
+  bool finite = all(lessThan(abs(color), vec3(1e37)));
   if (!finite) atomicAdd(non_finite_pixels, 1u);
   bool encode = frame.options.x != 0u;
   color = clamp(color, 0.0, 1.0);
