@@ -44,8 +44,30 @@ json libraries() {
           {"vulkan_loader", vulkan_version(loader)},
           {"sqlite", sqlite3_libversion()},
           {"openssl", OpenSSL_version(OPENSSL_VERSION)},
-          {"cpp_httplib", CPPHTTPLIB_VERSION},
-          {"openimageio", scenes::picture_formats().version()}};
+          {"cpp_httplib", CPPHTTPLIB_VERSION}};
+}
+
+/// Empty where no driver is found: check_drawing says so.
+json devices_found() {
+  json devices = json::array();
+  try {
+    for (const DeviceInfo& info : list_devices())
+      devices.push_back({{"index", info.index},
+                         {"name", info.name},
+                         {"driver", info.driver},
+                         {"type", info.type}});
+  } catch (const Error&) {
+  }
+  return devices;
+}
+
+/// EXR, TIFF and what else is read and written by a library that is loaded when first needed.
+Check check_formats() {
+  try {
+    return {"picture formats", true, "OpenImageIO " + scenes::picture_formats().version()};
+  } catch (const Error& error) {
+    return {"picture formats", false, error.what()};
+  }
 }
 
 json layers() {
@@ -83,14 +105,11 @@ Check check_validation(const json& names) {
 }
 
 int examine(const Session& session, const std::string& device, const fs::path& data) {
-  json devices = json::array();
-  for (const DeviceInfo& info : list_devices())
-    devices.push_back(
-        {{"index", info.index}, {"name", info.name}, {"driver", info.driver}, {"type", info.type}});
+  const json devices = devices_found();
   const json names = layers();
   std::vector<Check> checks{check_drawing(device, false), check_folder("data folder", data),
-                            check_folder("cache folder", cache_folder())};
-  const bool works = checks[0].fine && checks[1].fine;
+                            check_formats(), check_folder("cache folder", cache_folder())};
+  const bool works = checks[0].fine && checks[1].fine && checks[2].fine;
   checks.push_back(check_validation(names));  // good to have, needed by tests only
   checks.push_back({"techniques", !techniques::all().empty(),
                     std::to_string(techniques::all().size()) + " and " +
