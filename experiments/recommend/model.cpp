@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace penumbra::experiments::recommend {
@@ -121,9 +122,10 @@ class Model {
 };
 
 /// Less error at the budget, or the same error for less time: how much a candidate that was not
-/// measured promises over the best of those that were. A logarithm; zero or less: nothing.
+/// measured promises over the best of those that were. A logarithm; zero or less: nothing. Errors
+/// below `exact` are equal: what is exact can only be had for less time.
 double promise(const Guess& guess, const Known* best, bool best_fits, const Budget& budget,
-               const ModelConstants& constants) {
+               double exact, const ModelConstants& constants) {
   const double error = guess.error * std::exp(-constants.hope * guess.error_spread);
   const double ms = guess.ms * std::exp(-constants.hope * guess.ms_spread);
   const bool may_fit = budget.holds_ms(ms) && (!budget.bytes || guess.bytes <= 1.1 * *budget.bytes);
@@ -132,7 +134,7 @@ double promise(const Guess& guess, const Known* best, bool best_fits, const Budg
     return may_fit ? 100.0 - std::log(guess.error) : std::log(best->ms) - std::log(ms);
   if (!may_fit) return 0.0;
   const double tie = std::log1p(constants.tie);
-  const double gain = std::log(std::max(best->error, 1e-12) / std::max(error, 1e-12));
+  const double gain = std::log(std::max(best->error, exact) / std::max(error, exact));
   if (gain > tie) return gain;
   return gain > -tie ? std::log(best->ms / ms) : 0.0;
 }
@@ -162,6 +164,36 @@ std::string best_of(const Probes& measured, const Budget& budget, double tie) {
   return best->first;
 }
 
+namespace {
+
+/// What to try next: what promises most over `best`, or, where nothing promises more, what has the
+/// least error of all that should be faster. Empty: neither is there.
+std::string next_trial(const Model& model, const std::vector<std::string>& candidates,
+                       const std::set<std::string>& tried, const Known& none, const Known* best,
+                       const Budget& budget, const ModelConstants& constants) {
+  const bool fits = best != nullptr && budget.holds(*best);
+  const double exact = std::max(exact_share * none.error, 1e-12);
+  std::string promising, faster;
+  double most = 0.0, least = std::numeric_limits<double>::infinity();
+  for (const std::string& candidate : candidates) {
+    if (tried.contains(candidate)) continue;
+    const auto expected = model.guess(candidate);
+    if (!expected) continue;
+    const double gain = promise(*expected, best, fits, budget, exact, constants);
+    if (gain > most || (promising.empty() && best == nullptr)) {
+      most = gain;
+      promising = candidate;
+    }
+    if (fits && expected->ms < best->ms && expected->error < least) {
+      least = expected->error;
+      faster = candidate;
+    }
+  }
+  return promising.empty() ? faster : promising;
+}
+
+}  // namespace
+
 Choice choose(const Measured& others, const std::vector<std::string>& candidates, const Known& none,
               const Budget& budget,
               const std::function<std::optional<Known>(const std::string&)>& measure,
@@ -172,20 +204,8 @@ Choice choose(const Measured& others, const std::vector<std::string>& candidates
   while (tried.size() < most_probes) {
     const std::string best = best_of(probes, budget, constants.tie);
     const Known* known = best.empty() ? nullptr : &probes.at(best);
-    const Model model(others, none, probes, constants);
-    std::string next;
-    double most = 0.0;
-    for (const std::string& candidate : candidates) {
-      if (tried.contains(candidate)) continue;
-      const auto expected = model.guess(candidate);
-      if (!expected) continue;
-      const double gain =
-          promise(*expected, known, known != nullptr && budget.holds(*known), budget, constants);
-      if (gain > most || (next.empty() && known == nullptr)) {
-        most = gain;
-        next = candidate;
-      }
-    }
+    const std::string next = next_trial(Model(others, none, probes, constants), candidates, tried,
+                                        none, known, budget, constants);
     if (next.empty()) break;
     tried.insert(next);
     if (const auto result = measure(next)) {

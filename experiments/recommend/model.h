@@ -60,9 +60,11 @@ struct Choice {
   std::vector<std::string> probed;  ///< in order
 };
 
-/// Tries candidates on the scene, the one that promises most first, until none promises more than
-/// what was measured or `most_probes` are tried. `measure` returns nothing for a candidate that is
-/// refused. The choice is the least error that fits the budget, the faster of those that tie.
+/// Tries candidates on the scene, the one that promises most first. Where none promises more than
+/// what was measured, those that should be faster than the best follow, the nearest to the truth
+/// first, until there are none or `most_probes` are tried. `measure` returns nothing for a
+/// candidate that is refused. The choice is the least error that fits the budget, the faster of
+/// those that tie.
 Choice choose(const Measured& others, const std::vector<std::string>& candidates, const Known& none,
               const Budget& budget,
               const std::function<std::optional<Known>(const std::string&)>& measure,
