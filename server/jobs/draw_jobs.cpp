@@ -6,6 +6,7 @@ namespace penumbra::server {
 namespace {
 
 using nlohmann::json;
+using std::chrono::steady_clock;
 
 /// Share of a measurement's bar that the reference takes where it must be drawn first.
 constexpr double reference_part = 0.6;
@@ -26,11 +27,14 @@ Message task_message(const CanonicalRequest& request, const std::set<std::string
 
 void QueuedRenderService::work() {
   Crewman worker;
+  std::optional<steady_clock::time_point> has_drawn;  ///< the worker, last then
+  const std::chrono::duration<double> longest_rest(options_.fresh_after_s);
   Lock lock(mutex_);
   while (!stopping_) {
     // A worker is ready before there is work: the first picture need not wait for the driver.
     if (!worker || !worker->alive()) {
       worker.reset();
+      has_drawn.reset();
       worker = hire(lock);
       continue;  // hiring let go of the lock: the end may have come meanwhile
     }
@@ -41,6 +45,11 @@ void QueuedRenderService::work() {
       continue;
     }
     std::shared_ptr<Job> job = queue_.take();
+    if (!job && has_drawn && steady_clock::now() - *has_drawn > longest_rest) {
+      crew_.ended();
+      worker.reset();
+      continue;
+    }
     if (!job) {
       changed_.wait_for(lock, between_looks);
       continue;
@@ -48,6 +57,7 @@ void QueuedRenderService::work() {
     lock.unlock();
     execute(job, worker);
     lock.lock();
+    has_drawn = steady_clock::now();
   }
   lock.unlock();
   if (worker && worker->alive()) crew_.ended();

@@ -111,6 +111,9 @@ struct RenderServiceOptions {
   unsigned queue_limit = 256;                        ///< renders that may wait, of each priority
   double deadline_s = 300.0;                         ///< per render
   double checkpoint_s = CheckpointFolder{}.every_s;  ///< as CheckpointFolder::every_s
+  /// A worker that has drawn and then rested for so long gives way to a fresh one: drivers keep
+  /// much of what pictures took.
+  double fresh_after_s = 300.0;
   std::uint64_t cache_bytes = 4ull << 30;
   bool validation = false;
   /// Starts a worker; default is this very program with the argument `worker`.

@@ -57,6 +57,22 @@ TEST_F(RenderServiceTest, does_not_blame_a_picture_for_a_worker_that_died_before
   EXPECT_EQ(service->statistics().at("retries"), 0);
 }
 
+TEST_F(RenderServiceTest, has_a_fresh_worker_once_one_that_has_drawn_rests) {
+  options.fresh_after_s = 0.1;
+  start();
+  const auto started = [this] { return service->statistics().at("workers_started"); };
+  EXPECT_EQ(ended(request(64)).status, "done");
+  const auto deadline = steady_clock::now() + std::chrono::seconds(30);
+  while (started() != 2 && steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  // The fresh one has drawn nothing and stays.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(started(), 2);
+  EXPECT_EQ(service->statistics().at("workers_alive"), 1);
+  EXPECT_EQ(service->statistics().at("worker_deaths"), 0);
+  EXPECT_EQ(ended(request(65)).status, "done");
+}
+
 TEST_F(RenderServiceTest, refuses_what_the_device_cannot_hold_before_a_worker_sees_it) {
   ::setenv(
       "STAND_IN_LIMITS",
