@@ -23,11 +23,11 @@ struct FrameCost {
 /// alone. Its pipelines should have been made before.
 inline FrameCost frame_cost(Renderer& renderer, RenderRequest request, std::uint32_t frames) {
   const double start = worked_ms();
+  request.settle = true;
   request.frames = 2;
   renderer.render(request);
   const double between = worked_ms();
   request.frames = 2 + frames;
-  request.settle = true;
   Cost cost = renderer.render(request).cost;
   return {(worked_ms() - between - (between - start)) / frames, std::move(cost)};
 }

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How long a measured pair that nobody asked for before takes through the service, beyond its timed frames.
+"""How long a measured pair that was not asked for before takes through the service, beyond its timed frames.
 
     bench/fresh_pairs.py --program build/penumbra [--size 600] [--light-samples 256] [--device NAME]
 
 One server with an empty data folder. Of every view the first pair also draws the reference that all of its
-pairs are judged by. Prints a table in Markdown: wall time from the request to its answer, the part of it in
-which frames were drawn to be timed (those of `none` and those that a GPU draws until its times are steady
-among them), and the rest: starting, uploading, compiling, drawing the picture, encoding, judging, storing.
+pairs are judged by. Prints a table in Markdown: wall time from the request to its answer, the part of it that
+timed frames and raising a GPU's clocks took (cost.timing_ms), and the rest: starting, uploading, compiling, drawing
+the picture, encoding, judging, storing.
 """
 import argparse
 import statistics
@@ -31,7 +31,7 @@ def main():
         for scene in SCENES:
             for technique in TECHNIQUES:
                 start = time.monotonic()
-                record = server.measure(options, scene, technique, 1, options.light_samples)
+                record = server.measure(options, scene, technique, 1, light_samples=options.light_samples)
                 wall = 1000.0 * (time.monotonic() - start)
                 rows.append((scene, technique, wall, record["cost"]["timing_ms"]))
     print(f"{record['device']['name']}, {record['device']['driver']}, {options.size}x{options.size}, "

@@ -59,11 +59,11 @@ class Server:
         with urllib.request.urlopen(request, timeout=300) as reply:
             return json.load(reply)
 
-    def measure(self, options, scene, technique, seed, light_samples=1024):
+    def measure(self, options, scene, technique, seed, **fields):
         # A seed of its own makes every repeat a picture that is not in the cache.
         record = self.call("/api/v1/renders", {
             "scene": scene, "technique": technique, "width": options.size, "height": options.size,
-            "measure": True, "seed": seed, "light_samples": light_samples})
+            "measure": True, "seed": seed, **fields})
         while record["status"] in ("queued", "running"):
             record = self.call(f"/api/v1/renders/{record['id']}?wait_s=30")
         if record["status"] != "done":

@@ -39,6 +39,7 @@ double beyond_passes(Laboratory& lab, const std::string& scene, const std::strin
   request.technique = resolved.technique;
   request.parameters = resolved.parameters;
   request.width = request.height = lab.scale().size;
+  request.settle = true;  // as long for few frames as for many, once clocks are up
   double passes = 0.0;
   const auto seconds = [&](std::uint32_t frames) {
     request.frames = frames;

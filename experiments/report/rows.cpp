@@ -131,7 +131,8 @@ void add_facts(Page& page, const json& device, const std::string& command,
                               std::to_string(100 + unsigned(date.month())).substr(1) + "-" +
                               std::to_string(100 + unsigned(date.day())).substr(1)},
               {"Runs", std::to_string(rows.size()) + ", of which " + std::to_string(failed) +
-                           " failed and " + std::to_string(unsettled) + " never settled"}});
+                           " failed and " + std::to_string(unsettled) +
+                           " were timed at clocks that were not up"}});
   page.paragraph(
       "A frame's time is the median of the device's own clock over the frames counted in its row; "
       "spread is half the distance between quartiles over the median. A run of one frame has no "

@@ -83,11 +83,12 @@ RenderResult PictureRun::run() {
     draw_frame(frame_index_);
     costs_.add(state_.recorder.records(), state_.recorder.wall_ms(), frame_index_ >= warm_up);
     if (frame_index_ == 0)
-      create_ms = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+      create_ms =
+          std::chrono::duration<double, std::milli>(Clock::now() - start_).count() - settling_ms_;
   }
+  if (tells_clocks()) settled = settled && state_.yardstick.clocks_are_up(state_);
   if (follows_path()) hand_over(std::move(now_.points), now_.visibility, now_.judged);
   RenderResult result;
-  if (tells_clocks()) settled = settled && state_.yardstick.clocks_are_up(state_);
   result.cost = costs_.summary();
   result.cost.settled = settled;
   result.cost.settling_ms = settling_ms_;

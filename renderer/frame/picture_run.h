@@ -5,7 +5,6 @@
 #include "renderer/frame/cost_report.h"
 #include "renderer/frame/frame_run.h"
 #include "renderer/frame/round_sum.h"
-#include "renderer/frame/steady_times.h"
 
 namespace penumbra {
 

@@ -61,9 +61,16 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
   source.preamble = "#define DECODES " + std::to_string(gamma.decodes) + "\n";
-  vulkan::ProgramSource textured_source = source;
-  textured_source.preamble += "#define TEXTURED\n";
+  const auto with = [](vulkan::ProgramSource program, const char* line) {
+    program.preamble += line;
+    return program;
+  };
+  vulkan::ProgramSource textured_source = with(source, "#define TEXTURED\n");
   if (gamma.textures_as_stored) textured_source.preamble += "#define TEXTURES_AS_STORED\n";
+  // A program that may discard is run before depth is tested: for masks alone.
+  const char* masked = "#define MASKED\n";
+  const vulkan::ProgramSource programs[2][2] = {{source, with(source, masked)},
+                                                {textured_source, with(textured_source, masked)}};
   state.vertex_input = vulkan::VertexInput::surface;
   state.depth_compare = VK_COMPARE_OP_GREATER;
   state.depth_write = true;
@@ -93,10 +100,7 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     if (textured)
       bindings.texture("surface_texture", scene.texture_of(first.material),
                        vulkan::Sampling::linear_repeat);
-    vulkan::ProgramSource program = textured ? textured_source : source;
-    // A program that may discard is run before depth is tested: for masks alone.
-    if (first.masked) program.preamble += "#define MASKED\n";
-    commands.bind(pipelines.graphics(program, state), bindings);
+    commands.bind(pipelines.graphics(programs[textured][first.masked], state), bindings);
     commands.constants(first.material);
     commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);

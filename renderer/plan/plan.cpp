@@ -232,11 +232,12 @@ std::vector<Requirements> requirements_of(const RenderRequest& request,
                                           const std::vector<Bounds>& boxes) {
   const Scene& scene = *request.scene;
   const Camera& camera = scene.cameras[find_camera(scene, request.camera)];
+  const Bounds box = around(boxes);
   std::vector<Requirements> list;
   for (const Light& light : scene.lights) {
     list.emplace_back();
-    request.technique->create()->require(
-        technique_input(request, around(boxes), light, camera, parameters), list.back());
+    request.technique->create()->require(technique_input(request, box, light, camera, parameters),
+                                         list.back());
   }
   return list;
 }

@@ -14,28 +14,35 @@ layout(location = 0) out vec4 out_encoded;
 layout(location = 1) out vec4 out_linear;
 #endif
 
-vec3 mean_color() {
+// Some devices blend what is infinite to the greatest float, 3.4e38.
+bool is_finite(vec3 sum) { return all(lessThan(abs(sum), vec3(1e37))); }
+
+vec3 mean_color(out bool finite) {
 #ifdef FROM_LINEAR
-  return texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+  vec3 color = texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+  finite = is_finite(color);
+  return color;
 #elif defined(ONE_SAMPLE)
-  return frame.size.w * texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+  vec3 color = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+  finite = is_finite(color);
+  return frame.size.w * color;
 #else
   int side = int(frame.size.z);
   ivec2 first = ivec2(gl_FragCoord.xy) * side;
   vec3 sum = vec3(0.0);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) sum += texelFetch(radiance, first + ivec2(x, y), 0).rgb;
+  finite = is_finite(sum);
   return frame.size.w * sum / float(side * side);
 #endif
 }
 
 void main() {
-  vec3 color = mean_color();
+  bool finite;
+  vec3 color = mean_color(finite);
 #ifdef WITH_LINEAR
   out_linear = vec4(color, 1.0);
 #endif
-  // Some devices blend what is infinite to the greatest float, 3.4e38.
-  bool finite = all(lessThan(abs(color), vec3(1e37)));
   if (!finite) atomicAdd(non_finite_pixels, 1u);
   bool encode = frame.options.x != 0u;
   color = clamp(color, 0.0, 1.0);

@@ -104,11 +104,12 @@ void check_fits(const CanonicalRequest& canonical, const std::set<std::string>& 
   const RenderRequest request = to_render_request(canonical);
   const ParameterValues parameters =
       complete_parameters(request.technique->parameters, request.parameters);
+  const std::vector<Bounds> boxes = instance_boxes(*request.scene);
   try {
-    check_memory(requirements_of(request, parameters, instance_boxes(*request.scene)), limits);
+    check_memory(requirements_of(request, parameters, boxes), limits);
   } catch (const Error&) {
     // Lights that reach nothing are not drawn; only the plan knows them, and takes longer.
-    check_memory(make_plan(request, parameters, instance_boxes(*request.scene)), limits);
+    check_memory(make_plan(request, parameters, boxes), limits);
   }
 }
 

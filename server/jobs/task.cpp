@@ -97,7 +97,7 @@ json cost_to_json(const Cost& cost) {
           {"memory", {{"over_none_bytes", bytes}, {"resources", resources}}}};
 }
 
-/// Wall time of all frames that were drawn to be timed.
+/// Wall time of the counted frames and of raising clocks before them.
 double drawing_ms(const Cost& cost) {
   return cost.settling_ms + cost.timing_ms;
 }
@@ -164,7 +164,7 @@ json measure_cost(Renderer& renderer, const Task& task, const RenderResult& firs
   document["timing_ms"] = drawing_ms(cost) + drawing_ms(baseline);
   frame["over_none"] = number_or_null(cost.median_ms / baseline.median_ms);
   if (!frame.at("settled").get<bool>())
-    notes.push_back("the device's times never settled: do not compare them");
+    notes.push_back("the device's clocks were not up throughout: do not compare its times");
   return document;
 }
 
@@ -204,7 +204,7 @@ json path_difference(Renderer& renderer, const Task& task, const metrics::FrameC
 
 json measure_quality(const Task& task, const RenderResult& drawn, const Image8& reference,
                      std::vector<std::string>& notes) {
-  auto judging = std::async(std::launch::async, [&task, &drawn] {
+  auto judging = std::async([&task, &drawn] {
     const ImageF visibility = scenes::decode_exr(task.reference.visibility);
     return metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
   });
@@ -226,12 +226,12 @@ json measure_quality(const Task& task, const RenderResult& drawn, const Image8& 
           {"missing_shadow", judged(error.missing_shadow)}};
 }
 
-/// Files that are encoded beside each other and beside the judging of their picture. What they are
-/// made of outlives this.
+/// Files that are encoded beside each other and beside the judging of their picture, or when they
+/// are taken where no thread is to be had. What they are made of outlives this.
 class FilesBeingMade {
  public:
   void make(const char* name, std::function<std::string()> encode) {
-    files_.emplace_back(name, std::async(std::launch::async, std::move(encode)));
+    files_.emplace_back(name, std::async(std::move(encode)));
   }
   /// Waits for them.
   void take(std::map<std::string, std::string>& files) {

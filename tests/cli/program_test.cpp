@@ -352,6 +352,19 @@ TEST_F(ProgramTest, finds_this_machine_able_to_work) {
   EXPECT_FALSE(report.at("devices").empty());
 }
 
+TEST_F(ProgramTest, tells_what_else_it_knows_of_a_machine_without_a_driver) {
+  const Outcome outcome =
+      run("doctor --json", "VK_ICD_FILENAMES=none.json VK_DRIVER_FILES=none.json");
+  EXPECT_EQ(outcome.status, 1);
+  const json report = json::parse(outcome.out);
+  EXPECT_FALSE(report.at("works"));
+  EXPECT_TRUE(report.at("devices").empty());
+  const json& checks = report.at("checks");
+  EXPECT_FALSE(checks.at(0).at("fine"));
+  EXPECT_THAT(checks.at(0).at("found").get<std::string>(), HasSubstr("no Vulkan driver"));
+  EXPECT_TRUE(checks.at(1).at("fine")) << checks;
+}
+
 TEST_F(ProgramTest, says_which_device_is_not_there) {
   const Outcome outcome =
       run("render half-plane none --device no-such-device --width 8 --height 8");

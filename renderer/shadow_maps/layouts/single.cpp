@@ -12,11 +12,14 @@ bool follows_camera(const Light& light, const ParameterValues& parameters) {
   return is_at_infinity(light) && choice_of(parameters, "focus") == "seen";
 }
 
-/// For a light that shines around and stands far outside of the scene.
-std::optional<AimedView> aimed_view(const ViewFitting& fitting) {
-  const Light& light = *fitting.light.source;
+/// For a light that shines around and stands far outside of the scene: one view instead of six.
+std::optional<AimedView> aimed_view(const Light& light, const Bounds& scene_box) {
   if (!has_six_views(light)) return std::nullopt;
-  return view_of_box(fitting.scene_box, light.position);
+  return view_of_box(scene_box, light.position);
+}
+
+bool has_one_view(const Light& light, const Bounds& scene_box) {
+  return !has_six_views(light) || aimed_view(light, scene_box);
 }
 
 std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
@@ -34,7 +37,7 @@ std::vector<shader::MapView> fit_single(const ViewFitting& fitting) {
     const glm::dvec3 origin =
         center.x * axes.right() + center.y * axes.up + bounds.low.z * axes.forward;
     views.push_back(make_view(origin, axes, half, false, fitting.size));
-  } else if (const auto aimed = aimed_view(fitting)) {
+  } else if (const auto aimed = aimed_view(*light.source, fitting.scene_box)) {
     views = {make_view(light.position, aimed->axes, aimed->tangent * widen, true, fitting.size)};
   } else {
     views = views_around(light, widen, fitting.size);
@@ -57,9 +60,7 @@ Layout describe_single() {
           .serves = {LightKind::spot, LightKind::directional, LightKind::point},
           .view_count =
               [](const TechniqueInput& input) {
-                const bool six = has_six_views(input.light) &&
-                                 !view_of_box(input.scene_box, input.light.position);
-                return six ? 6u : 1u;
+                return has_one_view(input.light, input.scene_box) ? 1u : 6u;
               },
           .fit = fit_single,
           .warps = follows_camera};

@@ -126,7 +126,10 @@ std::optional<AimedView> view_of_box(const Bounds& box, const glm::dvec3& place)
     });
     if (tangent < best.tangent) best = {axes, tangent};
   }
-  if (best.tangent > tangent_of_six_views) return std::nullopt;
+  // A face's texels are as wide as in its middle times the cosine to its axis.
+  const glm::dvec3 cosines = glm::abs(forward);
+  const double widest = tangent_of_six_views * std::max({cosines.x, cosines.y, cosines.z});
+  if (best.tangent > widest) return std::nullopt;
   return best;
 }
 

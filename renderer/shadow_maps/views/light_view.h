@@ -30,8 +30,9 @@ struct AimedView {
   double tangent;
 };
 
-/// The view that holds a box, where none of six views around the place would be narrower: one then
-/// serves better than six. None where the place is within the box or too near.
+/// The view that holds a box, where its texels are no wider in its middle than those of six views
+/// around the place are there: one then serves better than six. None where the place is within the
+/// box or too near.
 std::optional<AimedView> view_of_box(const Bounds& box, const glm::dvec3& place);
 
 /// The view over a spot light's cone, or the six around a light that needs them; `widen` as wide.

@@ -69,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(
         Held{"hybrid", "dolly", 1e-3}, Held{"reference", "light-height", 1e-6},
         Held{"shadow-volumes", "light-height", 1e-6}, Held{"pcss", "ground", 1e8},
         Held{"shadow-map", "spot-distance", 1e6}, Held{"pcss", "spot-distance", 1e6},
-        Held{"esm", "spot-distance", 1e6}, Held{"msm", "scale-up", 1e14},
+        Held{"esm", "spot-distance", 1e6}, Held{"esm", "point-distance", 1e6},
+        Held{"pcf", "point-distance", 1e6}, Held{"msm", "scale-up", 1e14},
         Held{"shadow-map", "orthographic-outlier", 1e8},
         Held{"shadow-volumes", "orthographic-outlier", 1e8}));
 
