@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -29,6 +30,13 @@ std::string text_of(const std::filesystem::path& file) {
 std::string first_match(const std::string& text, const std::string& pattern) {
   std::smatch found;
   return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";
+}
+
+/// False for a process that is gone, or dead and not yet waited for.
+bool alive(pid_t process) {
+  const auto stat = text_of("/proc/" + std::to_string(process) + "/stat");
+  const auto name_end = stat.rfind(") ");
+  return name_end != std::string::npos && stat[name_end + 2] != 'Z' && stat[name_end + 2] != 'X';
 }
 
 httplib::Client client_of(int port) {
@@ -119,9 +127,13 @@ void ServerProcess::kill() {
   stopping_ = true;
   if (watcher_.joinable()) watcher_.join();
   if (pid_ <= 0) return;
+  const auto orphans = workers();
   ::kill(pid_, SIGKILL);
   ::waitpid(pid_, nullptr, 0);
   pid_ = -1;
+  // The system ends them too, a moment later: until then they may still write to the folder.
+  const auto gone = [](pid_t worker) { return !alive(worker); };
+  EXPECT_TRUE(eventually([&] { return std::ranges::all_of(orphans, gone); }, 10));
 }
 
 int ServerProcess::terminate(double seconds) {
