@@ -8,12 +8,20 @@
 
 #include "study/answer.h"
 #include "study/enrolment.h"
-#include "study/statistics/report.h"
 #include "study/study.h"
 
 /// What a study checks beside the ranks: attention and gold items, the practice page, the screen's
 /// brightness, entries under one name.
 namespace penumbra::study {
+
+/// A flag for another reason than the ranks, which the checks give.
+struct GivenFlag {
+  std::string participant;
+  std::string name;
+  double value = 0.0;
+  double threshold = 0.0;
+  std::string reason;
+};
 
 /// An answered page that has an expected answer.
 struct CheckedPage {

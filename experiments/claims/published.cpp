@@ -4,7 +4,7 @@
 #include <set>
 
 #include "experiments/claims/claim.h"
-#include "study/power.h"
+#include "study/statistics/power.h"
 #include "study/statistics/agreement.h"
 #include "study/van_sambeek_2007.h"
 

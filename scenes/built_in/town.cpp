@@ -9,15 +9,15 @@
 namespace penumbra::scenes {
 namespace {
 
-constexpr int columns = 20;       ///< houses along a street
-constexpr int streets = 11;       ///< each between two rows of houses
-constexpr double lot = 15.0;      ///< metres of street that a house has
-constexpr double block = 44.0;    ///< from street to street, metres
+constexpr int houses_a_street = 20;  ///< houses along a street
+constexpr int streets = 11;          ///< each between two rows of houses
+constexpr double lot = 15.0;         ///< metres of street that a house has
+constexpr double block = 44.0;       ///< from street to street, metres
 constexpr int church_column = 9;  ///< two lots by this one, on the fourth street, are the church's
 constexpr int church_street = 3;
 
 double column_x(int column) {
-  return lot * (column - 0.5 * (columns - 1));
+  return lot * (column - 0.5 * (houses_a_street - 1));
 }
 double street_z(int street) {
   return -block * street;
@@ -76,7 +76,7 @@ void add_church(SceneBuilder& b, const glm::dmat4& at) {
 void add_streets(SceneBuilder& b) {
   const Look asphalt = b.look("asphalt", {0.95f, 0.94f, 0.92f}, b.texture("asphalt", 147), 7.0);
   const Look pavement = b.look("pavement", {0.86f, 0.85f, 0.82f}, b.texture("concrete", 148), 3.0);
-  const double half = 0.5 * lot * columns + 8.0;
+  const double half = 0.5 * lot * houses_a_street + 8.0;
   Mesh mesh;
   for (int street = 0; street < streets; ++street) {
     const double z = street_z(street);
@@ -96,7 +96,7 @@ void add_streets(SceneBuilder& b) {
 Scene make_town() {
   SceneBuilder b("town", "A town of a million triangles");
   const Look grass = b.look("grass", {0.93f, 0.95f, 0.88f}, b.texture("grass", 149), 8.0);
-  const double half = 0.5 * lot * columns + 30.0;
+  const double half = 0.5 * lot * houses_a_street + 30.0;
   b.ground({-half, street_z(streets - 1) - 60.0}, {half, 60.0}, grass, "grass", 0.5);
   add_streets(b);
   const std::vector<std::uint32_t> houses = add_houses(b);
@@ -108,7 +108,7 @@ Scene make_town() {
   Random random(1000000);
   for (int street = 0; street < streets; ++street)
     for (const int side : {1, -1})
-      for (int column = 0; column < columns; ++column) {
+      for (int column = 0; column < houses_a_street; ++column) {
         // Drawn for every lot, so that one lot's use moves nothing on the next.
         const std::uint32_t kind = random.below(8), tree = random.below(3);
         const double back = random.range(0.0, 3.0), bend = random.range(-3.0, 3.0);

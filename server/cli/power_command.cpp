@@ -7,7 +7,7 @@
 #include "server/cli/progress.h"
 #include "server/cli/session.h"
 #include "server/files/durable_file.h"
-#include "study/power.h"
+#include "study/statistics/power.h"
 
 namespace penumbra::server::cli {
 namespace {

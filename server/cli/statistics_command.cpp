@@ -9,7 +9,7 @@
 #include "server/cli/written_file.h"
 #include "server/files/durable_file.h"
 #include "study/csv.h"
-#include "study/figures.h"
+#include "study/report/figures.h"
 #include "study/report/html.h"
 #include "study/report/latex.h"
 #include "study/responses.h"

@@ -27,14 +27,15 @@ Message task_message(const CanonicalRequest& request, const std::set<std::string
 
 void QueuedRenderService::work() {
   Crewman worker;
-  std::optional<steady_clock::time_point> has_drawn;  ///< the worker, last then
+  constexpr auto never = steady_clock::time_point::max();
+  auto last_drawn = never;  // by this worker
   const std::chrono::duration<double> longest_rest(options_.fresh_after_s);
   Lock lock(mutex_);
   while (!stopping_) {
     // A worker is ready before there is work: the first picture need not wait for the driver.
     if (!worker || !worker->alive()) {
       worker.reset();
-      has_drawn.reset();
+      last_drawn = never;
       worker = hire(lock);
       continue;  // hiring let go of the lock: the end may have come meanwhile
     }
@@ -45,7 +46,7 @@ void QueuedRenderService::work() {
       continue;
     }
     std::shared_ptr<Job> job = queue_.take();
-    if (!job && has_drawn && steady_clock::now() - *has_drawn > longest_rest) {
+    if (!job && steady_clock::now() - last_drawn > longest_rest) {
       crew_.ended();
       worker.reset();
       continue;
@@ -57,7 +58,7 @@ void QueuedRenderService::work() {
     lock.unlock();
     execute(job, worker);
     lock.lock();
-    has_drawn = steady_clock::now();
+    last_drawn = steady_clock::now();
   }
   lock.unlock();
   if (worker && worker->alive()) crew_.ended();

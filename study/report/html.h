@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/figures.h"
+#include "study/report/figures.h"
 
 namespace penumbra::study {
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/checks.h"
 #include "study/responses.h"
 #include "study/statistics/bootstrap.h"
 #include "study/statistics/objective.h"
@@ -12,15 +13,6 @@
 #include "study/study.h"
 
 namespace penumbra::study {
-
-/// A flag for another reason than the ranks, which the study's checks give.
-struct GivenFlag {
-  std::string participant;
-  std::string name;
-  double value = 0.0;
-  double threshold = 0.0;
-  std::string reason;
-};
 
 struct ReportOptions {
   AnalysisPlan plan;

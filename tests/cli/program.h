@@ -22,7 +22,7 @@ class ProgramTest : public testing::Test {
   /// Runs `penumbra ARGUMENTS` in a folder of its own; references stay in one cache for all.
   Outcome run(const std::string& arguments, const std::string& environment = "") {
     const std::string err = (folder.path() / "stderr").string();
-    const std::string command = "cd '" + folder.path().string() + "' && " + environment +
+    const std::string command = "cd '" + folder.path().string() + "' || exit; " + environment +
                                 " XDG_CACHE_HOME='" + PENUMBRA_BINARY_DIR + "/test-cache' '" +
                                 PENUMBRA_PROGRAM + "' " + arguments + " 2>'" + err + "'";
     Outcome outcome;

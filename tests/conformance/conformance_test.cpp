@@ -52,13 +52,6 @@ RenderRequest request_for(const TechniqueDescription& technique, Scene scene,
   return request;
 }
 
-/// One renderer under the validation layer for all cases: any message fails the render it belongs
-/// to.
-Renderer& renderer() {
-  static Renderer shared({.device = "", .validation = true});
-  return shared;
-}
-
 class Conformance : public testing::TestWithParam<std::size_t> {
  protected:
   const TechniqueDescription& technique() const { return subjects()[GetParam()]; }
@@ -78,16 +71,16 @@ double mean_judged(const RenderResult& result) {
 }
 
 TEST_P(Conformance, an_open_point_is_lit) {
-  EXPECT_NEAR(mean_judged(renderer().render(request_for(technique(), open_ground()))), 1.0, 1e-6);
+  EXPECT_NEAR(mean_judged(test::renderer().render(request_for(technique(), open_ground()))), 1.0, 1e-6);
 }
 
 TEST_P(Conformance, an_enclosed_point_is_dark) {
-  const double mean = mean_judged(renderer().render(request_for(technique(), covered_ground())));
+  const double mean = mean_judged(test::renderer().render(request_for(technique(), covered_ground())));
   EXPECT_NEAR(mean, casts_shadows() ? 0.0 : 1.0, 0.01);
 }
 
 TEST_P(Conformance, visibility_is_finite_and_between_0_and_1) {
-  const RenderResult result = renderer().render(request_for(technique(), box_on_ground()));
+  const RenderResult result = test::renderer().render(request_for(technique(), box_on_ground()));
   EXPECT_EQ(result.non_finite_pixels, 0u);
   EXPECT_THAT(result.visibility.pixels,
               testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f + 1e-6f))));
@@ -99,7 +92,7 @@ TEST_P(Conformance, every_kind_of_light_gives_a_finite_picture_or_a_typed_error)
     scene.lights[0].kind = kind;
     if (kind == LightKind::directional) scene.lights[0].extent.radius = 0.5;  // degrees
     try {
-      const RenderResult result = renderer().render(request_for(technique(), scene));
+      const RenderResult result = test::renderer().render(request_for(technique(), scene));
       EXPECT_EQ(result.non_finite_pixels, 0u);
       EXPECT_LT(mean_judged(result), casts_shadows() ? 0.999 : 1.001);
       EXPECT_GT(mean_judged(result), 0.5);
@@ -114,7 +107,7 @@ TEST_P(Conformance, every_diagnostic_picture_draws) {
     SCOPED_TRACE(diagnostic.name);
     RenderRequest request = request_for(technique(), box_on_ground(), 32);
     request.diagnostic = diagnostic.name;
-    const Image8 picture = renderer().render(request).diagnostic;
+    const Image8 picture = test::renderer().render(request).diagnostic;
     EXPECT_EQ(picture.width, 32u);
     // Something is to be seen: not all pixels are alike.
     const auto first =
@@ -144,7 +137,7 @@ TEST_P(Conformance, the_ends_of_every_parameter_give_a_picture_or_a_typed_error)
       RenderRequest request = request_for(technique(), box_on_ground(), 16);
       request.parameters[parameter.name] = end;
       try {
-        const RenderResult result = renderer().render(request);
+        const RenderResult result = test::renderer().render(request);
         EXPECT_EQ(result.picture.width, 16u);
       } catch (const Error& error) {
         // Too large for the device, or not served: said so, and the renderer lives on.
@@ -157,17 +150,17 @@ TEST_P(Conformance, the_ends_of_every_parameter_give_a_picture_or_a_typed_error)
 
 TEST_P(Conformance, the_same_request_gives_the_same_bytes_whatever_was_drawn_before) {
   const RenderRequest request = request_for(technique(), box_on_ground());
-  const RenderResult first = renderer().render(request);
-  const RenderResult again = renderer().render(request);
+  const RenderResult first = test::renderer().render(request);
+  const RenderResult again = test::renderer().render(request);
   EXPECT_TRUE(tests::same(first.picture, again.picture));
   EXPECT_TRUE(tests::same(first.visibility, again.visibility));
 
   for (const TechniqueDescription& other : subjects())
     if (other.id != technique().id) {
-      renderer().render(request_for(other, open_ground(), 32));
+      test::renderer().render(request_for(other, open_ground(), 32));
       break;
     }
-  EXPECT_TRUE(tests::same(renderer().render(request).picture, first.picture));
+  EXPECT_TRUE(tests::same(test::renderer().render(request).picture, first.picture));
 
   Renderer alone({.device = "", .validation = false});
   EXPECT_TRUE(tests::same(alone.render(request).picture, first.picture));
@@ -182,9 +175,9 @@ TEST_P(Conformance, two_cameras_agree_on_one_light) {
   moved.target.x += 0.25;
   scene.cameras.push_back(moved);
   RenderRequest request = request_for(technique(), scene);
-  const RenderResult from_first = renderer().render(request);
+  const RenderResult from_first = test::renderer().render(request);
   request.camera = "moved";
-  const RenderResult from_second = renderer().render(request);
+  const RenderResult from_second = test::renderer().render(request);
   std::size_t compared = 0;
   std::size_t different = 0;
   for (std::uint32_t y = 0; y < 64; ++y)
@@ -209,10 +202,10 @@ TEST_P(Conformance, is_nearer_the_reference_than_no_shadows) {
   const auto reference = techniques::resolve("reference");
   const auto none = techniques::resolve("none");
   const Image8 truth =
-      renderer().render(request_for(*reference.technique, box_on_ground())).picture;
+      test::renderer().render(request_for(*reference.technique, box_on_ground())).picture;
   const Image8 unshadowed =
-      renderer().render(request_for(*none.technique, box_on_ground())).picture;
-  const Image8 picture = renderer().render(request_for(technique(), box_on_ground())).picture;
+      test::renderer().render(request_for(*none.technique, box_on_ground())).picture;
+  const Image8 picture = test::renderer().render(request_for(technique(), box_on_ground())).picture;
   EXPECT_LT(tests::rms_y(picture, truth), 0.5 * metrics::rms_y(unshadowed, truth));
 }
 
@@ -228,9 +221,9 @@ TEST_P(Conformance, comes_as_near_the_reference_as_its_folder_promises) {
     request.scene = scenes::load(id);
     request.light_samples = 64;
     request.visibility = false;
-    const Image8 truth = renderer().render(request).picture;
+    const Image8 truth = test::renderer().render(request).picture;
     request.technique = &technique();
-    EXPECT_LE(tests::rms_y(renderer().render(request).picture, truth),
+    EXPECT_LE(tests::rms_y(test::renderer().render(request).picture, truth),
               bounds.at("rms_y_max").get<double>());
   }
 }

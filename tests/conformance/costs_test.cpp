@@ -98,11 +98,6 @@ TechniqueDescription worker() {
   return finished;
 }
 
-Renderer& renderer() {
-  static Renderer shared({.device = "", .validation = true});
-  return shared;
-}
-
 class Costs : public testing::Test {
  protected:
   Costs() {
@@ -114,7 +109,7 @@ class Costs : public testing::Test {
   Cost measured(std::int64_t first, std::int64_t second) {
     request.technique = &description;
     request.parameters = {{"first", first}, {"second", second}};
-    return renderer().render(request).cost;
+    return test::renderer().render(request).cost;
   }
 
   static const PassCost& pass(const Cost& cost, const std::string& name) {
@@ -174,7 +169,7 @@ TEST_F(Costs, counters_are_those_of_a_scene_counted_by_hand) {
   const auto none = techniques::resolve("none");
   request.technique = none.technique;
   request.frames = 1;
-  const Cost cost = renderer().render(request).cost;
+  const Cost cost = test::renderer().render(request).cost;
   // Two boxes of 12 triangles under a sky of one.
   const PassCost& geometry = pass(cost, "geometry");
   EXPECT_EQ(geometry.vertices, 3u + 2 * 36);
@@ -195,13 +190,13 @@ TEST_F(Costs, memory_is_what_the_images_hold) {
   EXPECT_EQ(cost.technique_memory[0].name, "worked");
   // A GPU may pad an image that is no power of two.
   EXPECT_GE(cost.technique_memory[0].bytes, 160u * 160 * 4);
-  if (renderer().device().type == "cpu") {
+  if (test::renderer().device().type == "cpu") {
     EXPECT_EQ(cost.technique_memory[0].bytes, 160u * 160 * 4);
   }
   const auto map = techniques::resolve("shadow-map");
   request.technique = map.technique;
   request.parameters = {};
-  const Cost mapped = renderer().render(request).cost;
+  const Cost mapped = test::renderer().render(request).cost;
   ASSERT_EQ(mapped.technique_memory.size(), 1u);
   EXPECT_EQ(mapped.technique_memory[0].bytes, 1048576u);  // van Sambeek 2007: 512 x 512 x 4
 }

@@ -13,11 +13,6 @@
 namespace penumbra {
 namespace {
 
-Renderer& renderer() {
-  static Renderer shared({.device = "", .validation = true});
-  return shared;
-}
-
 RenderRequest request_for(const std::string& technique, ParameterValues parameters = {},
                           LightKind light = LightKind::spot) {
   const techniques::Resolved resolved = techniques::resolve(technique, parameters);
@@ -52,7 +47,7 @@ void expect_needs_as_allocated(const RenderRequest& request, const std::string& 
        requirements_of(request, complete(request), instance_boxes(*request.scene)))
     for (const MemoryNeed& need : needs.memory) declared[need.name] += need.bytes;
   if (declared.empty()) return;
-  const Cost cost = renderer().render(request).cost;
+  const Cost cost = test::renderer().render(request).cost;
   const bool has_map = complete(request).contains("map_size");
   for (const auto& [name, bytes] : declared) {
     EXPECT_LE(bytes, bytes_of(cost, name)) << what << " says too much of " << name;
@@ -94,8 +89,8 @@ TEST(Memory, of_other_settings_is_declared_too) {
 }
 
 TEST(Memory, beyond_the_device_is_refused_before_anything_is_allocated) {
-  const Image8 before = renderer().render(request_for("pcf")).picture;
-  const DeviceLimits limits = renderer().limits();
+  const Image8 before = test::renderer().render(request_for("pcf")).picture;
+  const DeviceLimits limits = test::renderer().limits();
   unsigned refused = 0;
   for (const TechniqueDescription& technique : techniques::all()) {
     const bool has_map =
@@ -111,7 +106,7 @@ TEST(Memory, beyond_the_device_is_refused_before_anything_is_allocated) {
     if (bytes <= limits.light) continue;
     ++refused;
     try {
-      renderer().render(request);
+      test::renderer().render(request);
       ADD_FAILURE() << technique.id << " was drawn with " << bytes << " bytes";
     } catch (const Error& error) {
       EXPECT_EQ(error.code, "unsupported") << technique.id;
@@ -120,7 +115,7 @@ TEST(Memory, beyond_the_device_is_refused_before_anything_is_allocated) {
   }
   // Six faces of 16384 x 16384 floats are 6.4 GB.
   EXPECT_TRUE(refused >= 9 || limits.light > (std::uint64_t{6} << 30)) << refused;
-  EXPECT_TRUE(tests::same(renderer().render(request_for("pcf")).picture, before));
+  EXPECT_TRUE(tests::same(test::renderer().render(request_for("pcf")).picture, before));
 }
 
 constexpr EmbeddedFile glutton_shader[] = {
@@ -155,7 +150,7 @@ class Glutton : public Technique {
 };
 
 TEST(Memory, that_is_refused_in_the_middle_of_a_frame_costs_that_picture_only) {
-  const Image8 before = renderer().render(request_for("vsm")).picture;
+  const Image8 before = test::renderer().render(request_for("vsm")).picture;
   TechniqueDescription glutton;
   glutton.id = "glutton";
   glutton.family = "none";
@@ -170,13 +165,13 @@ TEST(Memory, that_is_refused_in_the_middle_of_a_frame_costs_that_picture_only) {
   request.technique = &finished;
   request.parameters = {};
   try {
-    renderer().render(request);
+    test::renderer().render(request);
     ADD_FAILURE() << "an image of 256 GiB was allocated";
   } catch (const Error& error) {
     EXPECT_EQ(error.code, "unsupported") << error.what();
     EXPECT_NE(std::string(error.what()).find("large"), std::string::npos) << error.what();
   }
-  EXPECT_TRUE(tests::same(renderer().render(request_for("vsm")).picture, before));
+  EXPECT_TRUE(tests::same(test::renderer().render(request_for("vsm")).picture, before));
 }
 
 TEST(Memory, limits_that_are_not_known_refuse_nothing) {

@@ -2,6 +2,11 @@
 
 namespace penumbra::test {
 
+Renderer& renderer() {
+  static Renderer shared({.device = "", .validation = true});
+  return shared;
+}
+
 void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis)

@@ -2,10 +2,13 @@
 
 #include <memory>
 
-#include "renderer/scene/scene.h"
+#include "renderer/render.h"
 
 /// Small scenes whose answer is known without rendering.
 namespace penumbra::test {
+
+/// One for all cases, under the validation layer: any message fails the render that it belongs to.
+Renderer& renderer();
 
 /// Closed box, counter-clockwise from outside, as an instance of its own mesh.
 void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high);

@@ -20,7 +20,8 @@ TEST_F(Durability, AnswersSurviveTwentyKills) {
   Answering people(server, enter_many(server, 1050), 24);
   for (; fault.tries < kills; ++fault.tries) {
     const auto before = people.acknowledged().size();
-    eventually([&] { return people.acknowledged().size() >= before + 95; });
+    // Few enough that people still answer at the last kill.
+    ASSERT_TRUE(eventually([&] { return people.acknowledged().size() >= before + 60; }));
     server.restart();
     ASSERT_TRUE(server.running()) << server.log();
   }

@@ -12,7 +12,7 @@
 #include "tests/http/zip_files.h"
 
 namespace penumbra::server::http {
-namespace {
+namespace own_pictures_test {
 
 constexpr std::uint32_t width = 16;
 constexpr std::uint32_t height = 8;
@@ -322,5 +322,5 @@ TEST_F(OwnPictures, ThatWereDamagedAreMadeFromTheUploadAgain) {
   EXPECT_FALSE(url_of(person, picture).empty());
 }
 
-}  // namespace
+}  // namespace own_pictures_test
 }  // namespace penumbra::server::http

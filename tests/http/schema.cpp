@@ -15,14 +15,14 @@ namespace penumbra::server::http {
 namespace {
 
 const valijson::Schema& schema_of(const std::string& name) {
-  static std::map<std::string, valijson::Schema> known;
-  if (const auto found = known.find(name); found != known.end()) return found->second;
+  static std::map<std::string, valijson::Schema> schemas;
+  if (const auto found = schemas.find(name); found != schemas.end()) return found->second;
   // References lead from the document's root: so does the schema that is parsed.
   nlohmann::json root = {{"components", api_document().at("components")}};
   root["allOf"] = nlohmann::json::array({{{"$ref", "#/components/schemas/" + name}}});
   valijson::SchemaParser parser;
-  parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(root), known[name]);
-  return known[name];
+  parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(root), schemas[name]);
+  return schemas[name];
 }
 
 }  // namespace

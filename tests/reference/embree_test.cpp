@@ -5,8 +5,8 @@
 #include "scenes/library.h"
 #include "tracer.h"
 
-namespace penumbra::testing {
-namespace {
+namespace penumbra::tests {
+namespace embree_test {
 
 constexpr std::uint32_t size = 128;
 
@@ -127,5 +127,5 @@ TEST(OcclusionMask, HidesEveryPointThatABatchDoesNotHave) {
   EXPECT_EQ(masks.front(), std::vector<std::uint32_t>(64, 0xffffffe0u));
 }
 
-}  // namespace
-}  // namespace penumbra::testing
+}  // namespace embree_test
+}  // namespace penumbra::tests

@@ -12,7 +12,7 @@
 #include "techniques/registry.h"
 #include "tests/kept_pictures/kept_pictures.h"
 
-namespace penumbra::testing {
+namespace penumbra::tests {
 namespace {
 
 class PicturesInParts : public ::testing::Test {
@@ -212,4 +212,4 @@ TEST_F(PicturesInParts, BeginAnewFromAStateThatIsNotTheirs) {
 }
 
 }  // namespace
-}  // namespace penumbra::testing
+}  // namespace penumbra::tests

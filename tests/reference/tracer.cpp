@@ -7,7 +7,7 @@ namespace penumbra {
 std::span<const EmbeddedFile> embedded_renderer_shaders();
 }
 
-namespace penumbra::testing {
+namespace penumbra::tests {
 namespace {
 
 /// As renderer/shaders/geometry_buffer.glsl packs unit vectors.
@@ -262,4 +262,4 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
   return result;
 }
 
-}  // namespace penumbra::testing
+}  // namespace penumbra::tests

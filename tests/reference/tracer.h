@@ -5,7 +5,7 @@
 #include "renderer/frame/prepare_context.h"
 #include "renderer/reference/occlusion_mask.h"
 
-namespace penumbra::testing {
+namespace penumbra::tests {
 
 /// A surface point and the unit normal of its facet, rounded as the geometry buffer rounds it.
 struct Receiver {
@@ -63,4 +63,4 @@ class Tracer {
   std::unique_ptr<GpuScene> scene_;
 };
 
-}  // namespace penumbra::testing
+}  // namespace penumbra::tests

@@ -9,7 +9,7 @@
 #include "techniques/registry.h"
 #include "tracer.h"
 
-namespace penumbra::testing {
+namespace penumbra::tests {
 namespace {
 
 class ReferenceUncertainty : public ::testing::Test {
@@ -199,4 +199,4 @@ TEST_F(ReferenceUncertainty, FallsAsTheRootOfRandomPointsAndFasterForEvenOnes) {
 }
 
 }  // namespace
-}  // namespace penumbra::testing
+}  // namespace penumbra::tests

@@ -8,7 +8,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace bias_test {
 
 constexpr std::uint32_t size = 200;
 
@@ -164,5 +164,5 @@ TEST(BiasStrategies, scale_does_not_matter) {
   }
 }
 
-}  // namespace
+}  // namespace bias_test
 }  // namespace penumbra::tests

@@ -12,7 +12,7 @@
 #include "renderer/error.h"
 
 namespace penumbra::tests {
-namespace {
+namespace depth_coding_test {
 
 /// A lit floor `distance` below a lamp, tilted so that a picture shows many steps of its depth.
 Scene tilted_floor(double distance) {
@@ -182,5 +182,5 @@ TEST(DepthCoding, a_range_that_ends_before_it_begins_is_refused) {
   }
 }
 
-}  // namespace
+}  // namespace depth_coding_test
 }  // namespace penumbra::tests

@@ -11,7 +11,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace exponential_test {
 
 constexpr std::uint32_t size = 64;  // texels of the map and pixels of its picture
 constexpr std::uint32_t on_plate = 30 * 30;
@@ -227,5 +227,5 @@ TEST(Bleeding, four_moments_know_two_layers_apart) {
   EXPECT_LT(leak("msm-64", 0.5, true), 0.3f * leak("vsm", 0.5, true));
 }
 
-}  // namespace
+}  // namespace exponential_test
 }  // namespace penumbra::tests

@@ -16,7 +16,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace layouts_test {
 
 constexpr std::uint32_t picture = 128;  // pixels a side
 
@@ -287,5 +287,5 @@ TEST(Layouts, pictures_drawn_in_windows_are_fitted_to_the_whole) {
   }
 }
 
-}  // namespace
+}  // namespace layouts_test
 }  // namespace penumbra::tests

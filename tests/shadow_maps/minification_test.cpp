@@ -11,7 +11,7 @@
 #include "scenes.h"
 
 namespace penumbra::tests {
-namespace {
+namespace minification_test {
 
 constexpr std::uint32_t picture = 128;  // pixels a side
 
@@ -137,5 +137,5 @@ TEST(MomentBounds, of_four_moments_need_to_know_the_receivers_plane) {
   EXPECT_LT(mean, 0.995);
 }
 
-}  // namespace
+}  // namespace minification_test
 }  // namespace penumbra::tests

@@ -14,7 +14,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace perspective_test {
 
 constexpr std::uint32_t picture = 128;  // pixels a side
 
@@ -213,5 +213,5 @@ TEST(PerspectiveMaps, of_a_lamp_wider_than_one_view_are_six_plain_ones) {
   EXPECT_LT(rms_of(scene, {{"layout", "perspective"}, {"map_size", 512}}), 0.1);
 }
 
-}  // namespace
+}  // namespace perspective_test
 }  // namespace penumbra::tests

@@ -12,7 +12,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace range_test {
 
 constexpr std::uint32_t picture = 64;
 
@@ -177,5 +177,5 @@ TEST(Cascades, fitted_to_samples_leave_out_what_hides_behind_a_wall) {
   EXPECT_LT(error("cascaded-sdsm"), 0.7 * error("cascaded"));
 }
 
-}  // namespace
+}  // namespace range_test
 }  // namespace penumbra::tests

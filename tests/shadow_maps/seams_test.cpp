@@ -11,7 +11,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace seams_test {
 
 constexpr std::uint32_t picture = 160;  // pixels a side
 constexpr double pi = 3.14159265358979;
@@ -235,5 +235,5 @@ TEST(FullTurns, of_the_light_leave_no_hole_and_swap_nothing) {
   turn(true);
 }
 
-}  // namespace
+}  // namespace seams_test
 }  // namespace penumbra::tests

@@ -15,7 +15,7 @@
 #include "tests/kept_pictures/kept_pictures.h"
 
 namespace penumbra::tests {
-namespace {
+namespace tiles_test {
 
 constexpr std::uint32_t picture = 128;
 
@@ -336,5 +336,5 @@ TEST(Tiles, that_show_nothing_are_not_drawn_unless_a_filter_reads_over_borders) 
   EXPECT_EQ(drawn("pcf-bilinear-3x3"), 16);
 }
 
-}  // namespace
+}  // namespace tiles_test
 }  // namespace penumbra::tests

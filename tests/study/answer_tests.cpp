@@ -5,7 +5,7 @@
 #include "study_file.h"
 
 namespace penumbra::study {
-namespace {
+namespace answer_tests {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -95,5 +95,5 @@ TEST(Answer, EqualPlacesShareTheMeanRank) {
   EXPECT_TRUE(doubled_mid_ranks({}).empty());
 }
 
-}  // namespace
+}  // namespace answer_tests
 }  // namespace penumbra::study

@@ -5,7 +5,7 @@
 #include "study_file.h"
 
 namespace penumbra::study {
-namespace {
+namespace checks_tests {
 
 using nlohmann::json;
 
@@ -155,5 +155,5 @@ TEST(CheckedStudies, TheParameterThatNamesAPersonIsNoStudyOrSession) {
   EXPECT_EQ(named(json::array()), "");
 }
 
-}  // namespace
+}  // namespace checks_tests
 }  // namespace penumbra::study

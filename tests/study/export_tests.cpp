@@ -9,7 +9,7 @@
 #include "study_file.h"
 
 namespace penumbra::study {
-namespace {
+namespace export_tests {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -180,5 +180,5 @@ TEST(Responses, WhatThePageNotedIsExported) {
   EXPECT_EQ(parse_responses(write_responses(rows)).size(), 9u);
 }
 
-}  // namespace
+}  // namespace export_tests
 }  // namespace penumbra::study

@@ -1,4 +1,4 @@
-#include "study/figures.h"
+#include "study/report/figures.h"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@
 #include "tests/figures/xml.h"
 
 namespace penumbra::study {
-namespace {
+namespace figures_tests {
 
 using nlohmann::json;
 using ::testing::Contains;
@@ -173,5 +173,5 @@ TEST(Measures, FaultsAreNamed) {
   EXPECT_THAT(complaint("scene,technique,rms_y\ncar,a,1\ncar,a,2\n"), HasSubstr("measured above"));
 }
 
-}  // namespace
+}  // namespace figures_tests
 }  // namespace penumbra::study

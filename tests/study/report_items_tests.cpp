@@ -11,7 +11,7 @@
 #include "survey_rows.h"
 
 namespace penumbra::study {
-namespace {
+namespace report_items_tests {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
@@ -263,5 +263,5 @@ TEST(ReportItems, WhateverIsMissingOrTiedIsAnsweredWithAReason) {
   }
 }
 
-}  // namespace
+}  // namespace report_items_tests
 }  // namespace penumbra::study

@@ -8,7 +8,7 @@
 #include "survey_rows.h"
 
 namespace penumbra::study {
-namespace {
+namespace report_tests {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
@@ -317,5 +317,5 @@ TEST_F(Degenerate, PicturesThatSomeDidNotSeeAreNeverRankedLast) {
   EXPECT_EQ(part["friedman"]["reason"], "some blocks are incomplete");
 }
 
-}  // namespace
+}  // namespace report_tests
 }  // namespace penumbra::study

@@ -11,7 +11,7 @@
 #include "survey_rows.h"
 
 namespace penumbra::study::statistics {
-namespace {
+namespace resampling_tests {
 
 TEST(Permutation, FriedmansExactTableIsReproduced) {
   // Three blocks of three that agree: 6 of 216 arrangements do. Hollander and Wolfe, table A.22.
@@ -102,5 +102,5 @@ TEST(Bt500Screening, SeesOneInvertedPersonOnlyInLargerGroups) {
   }
 }
 
-}  // namespace
+}  // namespace resampling_tests
 }  // namespace penumbra::study::statistics

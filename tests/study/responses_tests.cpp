@@ -8,7 +8,7 @@
 #include "study_file.h"
 
 namespace penumbra::study {
-namespace {
+namespace responses_tests {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -177,5 +177,5 @@ TEST(Responses, AnAnswerBecomesOneRowPerPictureWithMidRanks) {
   EXPECT_EQ(rows[0].swapped_direction, true);
 }
 
-}  // namespace
+}  // namespace responses_tests
 }  // namespace penumbra::study

@@ -8,7 +8,7 @@
 #include "study_file.h"
 
 namespace penumbra::study {
-namespace {
+namespace study_tests {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -225,5 +225,5 @@ TEST(Study, TheWelcomeTellsNeitherTechniquesNorScenesNorTheCompletionCode) {
   EXPECT_EQ(welcome["texts"]["en"]["difficulty_labels"].size(), 5u);
 }
 
-}  // namespace
+}  // namespace study_tests
 }  // namespace penumbra::study

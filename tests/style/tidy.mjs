@@ -29,12 +29,12 @@ export function reading_flags(command) {
 }
 
 /// Targets of a compilation database: name, sources and flags. Programs of tests and measurements are left
-/// out: they compile every file by itself, and nothing else sees what they define.
+/// out: nothing else sees what they define.
 export function targets_of(commands) {
   const targets = new Map();
   for (const { file, command } of commands) {
     const [, folder, name] = /-o (\S*?)CMakeFiles\/([^/]+)\.dir\//.exec(command) ?? [];
-    if (!name || /^(tests|bench)\//.test(folder) || /cmake_pch\.hxx/.test(path.basename(file))) continue;
+    if (!name || /^(tests|bench)\//.test(folder)) continue;
     if (!targets.has(name)) targets.set(name, { name, files: [], flags: [] });
     const target = targets.get(name);
     target.files.push(file);

@@ -13,15 +13,14 @@ test("words are those that a shell reads", () => {
 });
 
 test("of a command stays what says how the code is to be read", () => {
-  assert.deepEqual(reading_flags("/usr/bin/c++ -DX=1 -I/a -isystem /b -O2 -fpch-preprocess -Wall -std=c++20 -include /p.hxx -o o -c f.cpp"),
+  assert.deepEqual(reading_flags("/usr/bin/c++ -DX=1 -I/a -isystem /b -O2 -Wall -std=c++20 -include /p.hxx -o o -c f.cpp"),
     ["-DX=1", "-I/a", "-isystem/b", "-std=c++20"]);
 });
 
-test("a target is all of its files; tests, measurements and precompiled headers are none", () => {
+test("a target is all of its files; tests and measurements are none", () => {
   const entry = (folder, name, file, more = "") => ({ file, command: `c++ -I/a ${more} -o ${folder}CMakeFiles/${name}.dir/x.o -c ${file}` });
   assert.deepEqual(targets_of([entry("study/", "study", "/b.cpp"), entry("study/", "study", "/a.cpp", "-DA"),
-    entry("study/", "study", "/CMakeFiles/study.dir/cmake_pch.hxx.cxx"), entry("tests/study/", "t", "/t.cpp"),
-    entry("bench/", "b", "/m.cpp"), entry("", "main", "/m.cpp")]), [
+    entry("tests/study/", "t", "/t.cpp"), entry("bench/", "b", "/m.cpp"), entry("", "main", "/m.cpp")]), [
     { name: "study", files: ["/a.cpp", "/b.cpp"], flags: ["-I/a", "-DA"] },
     { name: "main", files: ["/m.cpp"], flags: ["-I/a"] },
   ]);

@@ -5,7 +5,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace alpha_test {
 
 using test::draw;
 constexpr std::uint32_t width = 96;
@@ -97,5 +97,5 @@ TEST(EvenAlpha, at_the_cutoff_in_a_part_of_an_uneven_mesh_is_solid_there) {
   EXPECT_EQ(wrong_pixels(draw(scene, "ray-traced", {}, {}, width), scene), 0u);
 }
 
-}  // namespace
+}  // namespace alpha_test
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace crowd_test {
 
 using test::draw;
 constexpr std::uint32_t width = 64;
@@ -155,5 +155,5 @@ TEST(Crowds, are_counted_in_an_image_only_where_the_stencil_may_not_hold_them) {
   EXPECT_TRUE(counts_deeply(stack(256, false), "shadow-volumes"));
 }
 
-}  // namespace
+}  // namespace crowd_test
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace exactness_test {
 
 using test::draw;
 using test::size;
@@ -138,5 +138,5 @@ TEST(ShadowVolumes, counted_in_one_pass_and_in_two_differ_at_most_by_slivers) {
   }
 }
 
-}  // namespace
+}  // namespace exactness_test
 }  // namespace penumbra

@@ -8,7 +8,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace extremes_test {
 
 using test::draw;
 constexpr std::uint32_t width = 96;
@@ -317,5 +317,5 @@ TEST(Reference, finishes_where_thousands_of_triangles_stand_in_one_shaft) {
   EXPECT_GT(lit, 500);
 }
 
-}  // namespace
+}  // namespace extremes_test
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace far_test {
 
 using test::draw;
 constexpr std::uint32_t width = 96;
@@ -109,5 +109,5 @@ TEST(FarScenes, name_the_step_of_coordinates_that_are_too_coarse_for_their_mesh)
   EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("0.5 m")));
 }
 
-}  // namespace
+}  // namespace far_test
 }  // namespace penumbra

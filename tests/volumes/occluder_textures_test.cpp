@@ -11,7 +11,7 @@
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
-namespace {
+namespace occluder_textures_test {
 
 using techniques::occluder_textures::Body;
 using techniques::occluder_textures::box_around;
@@ -318,5 +318,5 @@ TEST(OccluderTextures, say_that_a_round_sheet_has_too_many_parts) {
               testing::Contains(testing::HasSubstr("too many flat parts")));
 }
 
-}  // namespace
+}  // namespace occluder_textures_test
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
-namespace {
+namespace scale_test {
 
 using test::draw;
 constexpr std::uint32_t width = 48;
@@ -40,5 +40,5 @@ TEST(Scale, changes_the_picture_of_no_technique) {
   }
 }
 
-}  // namespace
+}  // namespace scale_test
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 #include "tests/volumes/exact_rays.h"
 
 namespace penumbra {
-namespace {
+namespace served_casters_test {
 
 using test::draw;
 using testing::Contains;
@@ -175,5 +175,5 @@ TEST(Notes, say_that_masks_are_ignored) {
     EXPECT_THAT(judge(scene, technique).notes, Contains(HasSubstr("alpha masks"))) << technique;
 }
 
-}  // namespace
+}  // namespace served_casters_test
 }  // namespace penumbra

@@ -7,7 +7,7 @@
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
-namespace {
+namespace soft_volumes_test {
 
 using shadow_volumes::part_beyond_line;
 using test::draw;
@@ -235,5 +235,5 @@ TEST(SoftShadowVolumes,
       << "three lit faces of two triangles";
 }
 
-}  // namespace
+}  // namespace soft_volumes_test
 }  // namespace penumbra

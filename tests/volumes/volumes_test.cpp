@@ -7,7 +7,7 @@
 #include "tests/volumes/drawing.h"
 
 namespace penumbra {
-namespace {
+namespace volumes_test {
 
 using test::draw;
 using test::ground_point;
@@ -354,5 +354,5 @@ TEST(ShadowVolumes, by_brute_force_draw_more_primitives_than_silhouettes_do) {
   EXPECT_GT(primitives("shadow-volumes-brute-force"), 2 * primitives("shadow-volumes-zpass"));
 }
 
-}  // namespace
+}  // namespace volumes_test
 }  // namespace penumbra

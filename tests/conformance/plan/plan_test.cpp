@@ -37,12 +37,6 @@ Plan plan_of(const Scene& scene, const std::string& technique) {
   return plan_of(request_of(scene, technique));
 }
 
-/// One renderer under the validation layer for all cases.
-Renderer& renderer() {
-  static Renderer shared({.device = "", .validation = true});
-  return shared;
-}
-
 PlanRules without_rules() {
   return {.lights = false, .surfaces = false, .casters = false, .textures = false};
 }
@@ -244,11 +238,11 @@ TEST(DepthRange, ends_at_the_farthest_surface_that_is_seen_and_lit) {
 
 TEST(DepthRange, spares_maps_of_few_bits_the_depth_that_nothing_needs) {
   RenderRequest truth = request_of(floor_above_a_distant_thing(), "ray-traced");
-  const RenderResult exact = renderer().render(truth);
+  const RenderResult exact = test::renderer().render(truth);
   RenderRequest request = request_of(floor_above_a_distant_thing(), "shadow-map");
   request.parameters["depth_bits"] = std::string("16");
   const auto missing = [&] {
-    const RenderResult result = renderer().render(request);
+    const RenderResult result = test::renderer().render(request);
     return tests::visibility_error(result.visibility, exact.visibility, result.judged)
         .missing_shadow;
   };
@@ -268,14 +262,14 @@ TEST(DepthRange, never_raises_an_error_by_fitting) {
       RenderRequest request = request_of(*scenes::load(id), resolved.technique->id);
       RenderRequest truth = request;
       truth.technique = techniques::resolve("ray-traced").technique;
-      const RenderResult exact = renderer().render(truth);
+      const RenderResult exact = test::renderer().render(truth);
       request.parameters = resolved.parameters;
       if (technique == std::string("shadow-map"))
         request.parameters["depth_bits"] = std::string("16");
-      const double fitted = false_and_missing(renderer().render(request), exact);
+      const double fitted = false_and_missing(test::renderer().render(request), exact);
       request.rules.depth_range = false;
       // Filters round: a thousandth of the pixels may fall on either side.
-      EXPECT_LE(fitted, false_and_missing(renderer().render(request), exact) + 0.001);
+      EXPECT_LE(fitted, false_and_missing(test::renderer().render(request), exact) + 0.001);
     }
 }
 
@@ -288,18 +282,18 @@ const PassCost& pass_of(const RenderResult& result, const std::string& name) {
 
 TEST(PlannedRender, an_unlit_caster_costs_the_map_nothing) {
   Scene scene = test::box_on_ground();
-  const RenderResult before = renderer().render(request_of(scene, "shadow-map"));
+  const RenderResult before = test::renderer().render(request_of(scene, "shadow-map"));
   test::add_box(scene, {30, 0, 30}, {31, 1, 31});
-  const RenderResult after = renderer().render(request_of(scene, "shadow-map"));
+  const RenderResult after = test::renderer().render(request_of(scene, "shadow-map"));
   EXPECT_EQ(pass_of(before, "shadow map").vertices, pass_of(after, "shadow map").vertices);
   EXPECT_EQ(pass_of(before, "geometry").vertices, pass_of(after, "geometry").vertices);
 }
 
 TEST(PlannedRender, a_light_without_extent_costs_one_point_of_many) {
   Scene scene = test::box_on_ground();
-  const RenderResult soft = renderer().render(request_of(scene, "reference"));
+  const RenderResult soft = test::renderer().render(request_of(scene, "reference"));
   scene.lights[0].extent = {};
-  const RenderResult hard = renderer().render(request_of(scene, "reference"));
+  const RenderResult hard = test::renderer().render(request_of(scene, "reference"));
   const auto invocations = [](const RenderResult& result) {
     std::uint64_t sum = 0;
     for (const PassCost& pass : result.cost.passes)
@@ -317,7 +311,7 @@ TEST(PlannedRender, draws_a_picture_of_nothing) {
   scene.cameras[0].target = {0, 6, 0};
   for (const std::string technique : {"none", "shadow-map", "shadow-volumes", "reference"}) {
     SCOPED_TRACE(technique);
-    const RenderResult result = renderer().render(request_of(scene, technique));
+    const RenderResult result = test::renderer().render(request_of(scene, technique));
     EXPECT_THAT(result.judged.pixels, testing::Each(0.0f));
     EXPECT_THAT(result.visibility.pixels, testing::Each(1.0f));
   }
@@ -331,7 +325,7 @@ TEST_P(PlannedTechnique, draws_the_same_bytes_with_and_without_each_rule) {
     RenderRequest request = request_of(scattered(seed), GetParam());
     RenderResult planned;
     try {
-      planned = renderer().render(request);
+      planned = test::renderer().render(request);
     } catch (const Error& error) {
       ASSERT_EQ(error.code, "unsupported") << error.what();
       continue;
@@ -345,7 +339,7 @@ TEST_P(PlannedTechnique, draws_the_same_bytes_with_and_without_each_rule) {
       }
     for (const PlanRules& rules : variants) {
       request.rules = rules;
-      const RenderResult result = renderer().render(request);
+      const RenderResult result = test::renderer().render(request);
       EXPECT_TRUE(tests::same(result.picture, planned.picture));
       EXPECT_TRUE(tests::same(result.visibility, planned.visibility));
       EXPECT_TRUE(tests::same(result.judged, planned.judged));

@@ -1,4 +1,4 @@
-#include "study/power.h"
+#include "study/statistics/power.h"
 
 #include <algorithm>
 #include <cmath>

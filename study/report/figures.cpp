@@ -1,4 +1,4 @@
-#include "study/figures.h"
+#include "study/report/figures.h"
 
 #include <algorithm>
 #include <cmath>
