@@ -4,8 +4,8 @@
 #include <set>
 
 #include "experiments/claims/claim.h"
-#include "study/statistics/power.h"
 #include "study/statistics/agreement.h"
+#include "study/statistics/power.h"
 #include "study/van_sambeek_2007.h"
 
 namespace penumbra::experiments::claims {

@@ -52,10 +52,10 @@ TEST_F(ProgramTest, answers_wrong_usage_with_state_2_and_the_argument_at_fault) 
 TEST_F(ProgramTest, serves_until_a_signal_and_then_ends_in_order) {
   for (const std::string signal : {"HUP", "TERM", "INT"}) {
     const std::string out = "out-" + signal;
-    const Outcome outcome =
-        run("serve --port 0 --ops-port 0 --data data >" + out +
-            " 2>log & p=$!; for i in $(seq 200); do test -s " + out +
-            " && break; sleep 0.1; done; test -s " + out + " || echo silent; kill -" + signal + " $p; wait $p; echo state $?");
+    const Outcome outcome = run("serve --port 0 --ops-port 0 --data data >" + out +
+                                " 2>log & p=$!; for i in $(seq 200); do test -s " + out +
+                                " && break; sleep 0.1; done; test -s " + out +
+                                " || echo silent; kill -" + signal + " $p; wait $p; echo state $?");
     EXPECT_EQ(outcome.out, "state 0\n") << signal;
     EXPECT_THAT(read_whole(path("log")).value_or(""),
                 HasSubstr("health and metrics on 127.0.0.1:"));

@@ -71,11 +71,13 @@ double mean_judged(const RenderResult& result) {
 }
 
 TEST_P(Conformance, an_open_point_is_lit) {
-  EXPECT_NEAR(mean_judged(test::renderer().render(request_for(technique(), open_ground()))), 1.0, 1e-6);
+  EXPECT_NEAR(mean_judged(test::renderer().render(request_for(technique(), open_ground()))), 1.0,
+              1e-6);
 }
 
 TEST_P(Conformance, an_enclosed_point_is_dark) {
-  const double mean = mean_judged(test::renderer().render(request_for(technique(), covered_ground())));
+  const double mean =
+      mean_judged(test::renderer().render(request_for(technique(), covered_ground())));
   EXPECT_NEAR(mean, casts_shadows() ? 0.0 : 1.0, 0.01);
 }
 
