@@ -156,6 +156,12 @@ Parameter Parameter::compiled() const {
   return copy;
 }
 
+Parameter Parameter::ablating() const {
+  Parameter copy = *this;
+  copy.ablates = true;
+  return copy;
+}
+
 Parameter integer(const std::string& name, std::int64_t default_value, const Range& range,
                   const std::string& meaning) {
   return {.name = name,

@@ -34,6 +34,7 @@ struct Parameter {
   std::vector<std::string> choices;  ///< of type choice
   std::string meaning;
   bool variant = false;  ///< GLSL sees a compile-time constant: for loop bounds and code paths
+  bool ablates = false;  ///< takes away what the method needs, to show why: no search sets it
   std::optional<Choices> only_with = {};  ///< without one of these it changes nothing
 
   // For declarations in one line: integer("size", 512, {1, 16384}, "Of the
@@ -41,6 +42,7 @@ struct Parameter {
   Parameter log() const;                         ///< scale is logarithmic
   Parameter in(const std::string& unit_) const;  ///< unit
   Parameter compiled() const;                    ///< variant
+  Parameter ablating() const;                    ///< ablates
 };
 
 /// What a number may be, ends included.

@@ -50,7 +50,7 @@ class Walk {
     const ParameterValues origin = found_[from].given;
     for (const Parameter& parameter : parameters_) {
       if (!names.empty() && !names.contains(parameter.name)) continue;
-      if (!has_effect(parameter, parameters_, origin)) continue;
+      if (parameter.ablates || !has_effect(parameter, parameters_, origin)) continue;
       const auto now = origin.find(parameter.name);
       const ParameterValue value = now == origin.end() ? parameter.default_value : now->second;
       for (const ParameterValue& step : steps_from(parameter, value)) {

@@ -54,6 +54,16 @@ TEST(ParameterSearch, follows_the_front_of_a_law_to_both_ends_and_leaves_what_is
   EXPECT_THAT(sizes, ElementsAre(8, 16, 32, 64, 128, 256, 512, 1024));
 }
 
+TEST(ParameterSearch, never_ablates_however_well_it_would_pay) {
+  const Parameter size = integer("size", 64, 8, 1024);
+  const Parameter without = choice("without", "nothing", {"nothing", "caps"}, "").ablating();
+  for (const Found& found : search({size, without}, 30, [&](const ParameterValues& given) {
+         const double s = value_of(given, size);
+         return std::optional<Scores>({given.contains("without") ? 1.0 : s, {1.0 / s}});
+       }))
+    EXPECT_FALSE(found.given.contains("without"));
+}
+
 TEST(ParameterSearch, keeps_to_its_budget_and_goes_on_past_what_is_refused) {
   const Parameter size = integer("size", 64, 8, 1024);
   const auto found = search({size}, 4, [&](const ParameterValues& given) -> std::optional<Scores> {
