@@ -11,8 +11,8 @@
 /// A full grid of eight parameters is out of reach. The search starts from the defaults, takes
 /// every single step from them, and then goes on from points that none beats in time and in some
 /// error, the one with the fewest steps taken first, with those parameters alone whose steps have
-/// led to such points. It ends with the budget, or when no step is left. Parameters that ablate keep
-/// their defaults: a method without what it needs is no offer.
+/// led to such points. It ends with the budget, or when no step is left. Parameters that ablate
+/// keep their defaults: a method without what it needs is no offer.
 namespace penumbra::experiments {
 
 /// What a measurement says: smaller is better everywhere.
