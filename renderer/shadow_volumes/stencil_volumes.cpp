@@ -102,12 +102,10 @@ Parameter ablation_parameter() {
   return choice("ablation", "none",
                 {"none", "far-clipped", "uncapped", "gaps-ignored", "first-corner"},
                 "Leaves one precaution out, to show what it is for. far-clipped: volumes are cut "
-                "off by a "
-                "far plane behind the last visible surface. uncapped: volumes have sides only. "
-                "gaps-ignored: "
-                "meshes with gaps are taken for closed ones. first-corner: the side of a triangle "
-                "that looks "
-                "at the light is decided by the direction to its first corner.")
+                "off by a far plane behind the last visible surface. uncapped: volumes have sides "
+                "only. gaps-ignored: meshes with gaps are taken for closed ones. first-corner: the "
+                "side of a triangle that looks at the light is decided by the direction to its "
+                "first corner.")
       .ablating();
 }
 

@@ -130,7 +130,10 @@ test("what the server refuses is said in words at the field concerned", async ()
 
 test("an experiment is started, followed and its report sorts by a click", async () => {
   await page.goto(`${server.base}/lab#experiments`);
-  await page.getByLabel("Scenes", { exact: true }).fill("sweep:1x100x3");
+  const scenes = page.getByLabel("Scenes", { exact: true });
+  await scenes.fill("sweep:1x100x3");
+  const example = page.locator(`#${await scenes.getAttribute("aria-describedby")}`);
+  assert.match(await example.innerText(), /^Such as \S/);
   await page.getByLabel("Techniques", { exact: true }).fill("--out=elsewhere");
   await page.getByRole("button", { name: "Start" }).click();
   await page.locator(".upload .problems", { hasText: "techniques" }).waitFor();

@@ -37,8 +37,12 @@ function field(key) {
   if (key.form === "flag")
     return [h("label", { for: id, class: "flag" }, h("input", { id, type: "checkbox" }), label_of(key))];
   const kind = key.form === "number" ? { type: "number", step: "any" } : { type: "text" };
-  const hint = key.example ? `such as ${key.example}` : "";
-  return [h("label", { for: id }, label_of(key)), h("input", { id, ...kind, placeholder: hint, required: key.required })];
+  const input = h("input", { id, ...kind, required: key.required });
+  const named = [h("label", { for: id }, label_of(key)), input];
+  if (!key.example) return named;
+  // Beside the input, not in it: still there while something is typed, and read out.
+  input.setAttribute("aria-describedby", `${id}-help`);
+  return [...named, h("p", { id: `${id}-help`, class: "small" }, `Such as ${key.example}`)];
 }
 
 /** What was filled in, by key; what was left empty takes the program's default. */
