@@ -22,7 +22,7 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 /// Changes with how runs are measured, where no digest tells.
-constexpr int protocol = 1;
+constexpr int protocol = 2;
 
 /// A time of `none` that is older is taken again: clocks and other work change meanwhile.
 constexpr double baseline_s = 20.0;
@@ -187,11 +187,8 @@ void Engine::time_first(const std::vector<Run>& runs) {
     const techniques::Resolved technique = techniques::resolve(run.technique, run.parameters);
     const std::string key = scenes::json_text(key_of(run, technique));
     if (is_known(key) || timed_.contains(key)) continue;
-    RenderRequest request = request_of(run, technique);
-    request.visibility = false;
     try {
-      RenderResult drawn;
-      timed_[key] = time(run, std::move(request), drawn);
+      timed_[key] = time(run, request_of(run, technique));
     } catch (const Error&) {  // drawn for its errors it fails again, and that is kept
     }
   }
@@ -271,20 +268,20 @@ const Engine::Baseline& Engine::baseline_of(const Run& run) {
   const auto now = Clock::now();
   if (baseline.ms == 0.0 ||
       std::chrono::duration<double>(now - baseline.when).count() > baseline_s) {
-    RenderRequest request = request_of(run, techniques::resolve(technique_of_family("none").id));
-    request.visibility = false;
-    const Cost cost = timer_.time(request).cost;
+    const Cost cost =
+        timer_.time(request_of(run, techniques::resolve(technique_of_family("none").id))).cost;
     baseline = {cost.median_ms, cost.settled, Clock::now()};
   }
   return baseline;
 }
 
-Engine::Timed Engine::time(const Run& run, RenderRequest request, RenderResult& drawn) {
+Engine::Timed Engine::time(const Run& run, const RenderRequest& request, const Cost* drawn) {
   const std::shared_ptr<void> alone = options_.alone ? options_.alone() : nullptr;
   Timed timed;
   if (!is_baseline(run)) timed.before = baseline_of(run);
-  drawn = timer_.time(std::move(request));
-  timed.cost = drawn.cost;
+  RenderResult frames = timer_.time(request, drawn);
+  timed.cost = std::move(frames.cost);
+  timed.notes = std::move(frames.notes);
   if (is_baseline(run))
     baselines_[view_of(run)] = {timed.cost.median_ms, timed.cost.settled, Clock::now()};
   return timed;
@@ -304,13 +301,14 @@ std::future<json> Engine::measure_now(const Run& run, const techniques::Resolved
   try {
     // The truth first: nothing may come between the times of `none` and of the technique.
     if (run.truth != Truth::none) judge = judge_of(run);
-    RenderRequest request = request_of(run, technique);
+    const RenderRequest request = request_of(run, technique);
     auto known = timed_.extract(key);
-    if (!known.empty()) *drawn = renderer_.render(request);
-    const Timed timed =
-        known.empty() ? time(run, std::move(request), *drawn) : std::move(known.mapped());
+    const bool looked_at = judge || run.picture;
+    if (looked_at) *drawn = renderer_.render(request);
+    const Timed timed = known.empty() ? time(run, request, looked_at ? &drawn->cost : nullptr)
+                                      : std::move(known.mapped());
     add_cost(row, timed.cost);
-    row["notes"] = drawn->notes;
+    row["notes"] = looked_at ? drawn->notes : timed.notes;
     const double none_ms = is_baseline(run) ? timed.cost.median_ms : timed.before.ms;
     row["settled"] = timed.cost.settled && timed.before.settled;
     row["none_ms"] = none_ms;

@@ -115,12 +115,12 @@ class Engine {
   };
   struct Timed {
     Cost cost;
+    std::vector<std::string> notes;
     Baseline before;  ///< of `none`; empty for itself
   };
 
   bool is_known(const std::string& key) const;
-  /// The cost is of frames that were timed, the picture of the last one drawn.
-  Timed time(const Run& run, RenderRequest request, RenderResult& drawn);
+  Timed time(const Run& run, const RenderRequest& request, const Cost* drawn = nullptr);
   nlohmann::json key_of(const Run& run, const techniques::Resolved& technique);
   std::future<nlohmann::json> measure_now(const Run& run, const techniques::Resolved& technique,
                                           const std::string& key);

@@ -17,13 +17,19 @@ std::uint32_t frames_within(const TimingBudget& budget, double each_ms) {
 
 }  // namespace
 
-RenderResult FrameTimer::time(RenderRequest request) {
-  return renderer_.device().type == "cpu" ? time_on_processor(request) : time_on_gpu(request);
+RenderResult FrameTimer::time(RenderRequest request, const Cost* drawn) {
+  request.visibility = false;
+  return renderer_.device().type == "cpu" ? time_on_processor(request, drawn)
+                                          : time_on_gpu(request);
 }
 
-RenderResult FrameTimer::time_on_processor(RenderRequest& request) {
+RenderResult FrameTimer::time_on_processor(RenderRequest& request, const Cost* drawn) {
   request.frames = 1;
-  RenderResult once = renderer_.render(request);
+  RenderResult once;
+  if (drawn != nullptr)
+    once.cost = *drawn;
+  else
+    once = renderer_.render(request);
   const double first_ms = frame_ms(once.cost);
   if (first_ms > budget_.longest_ms) return once;
   // The first frame may have waited for compilers: it tells at most what the others take.

@@ -20,11 +20,13 @@ class FrameTimer {
   FrameTimer(Renderer& renderer, const TimingBudget& budget)
       : renderer_(renderer), budget_(budget) {}
 
-  /// The request's `frames` and `settle` are chosen here. The picture is of the last frame.
-  RenderResult time(RenderRequest request);
+  /// The request's `frames` and `settle` are chosen here. Visibility is for judges, and not drawn.
+  /// `drawn`: the cost of the same picture, where it was drawn already; a frame that takes longer
+  /// than the longest is not drawn again for its time.
+  RenderResult time(RenderRequest request, const Cost* drawn = nullptr);
 
  private:
-  RenderResult time_on_processor(RenderRequest& request);
+  RenderResult time_on_processor(RenderRequest& request, const Cost* drawn);
   RenderResult time_on_gpu(RenderRequest& request);
 
   Renderer& renderer_;

@@ -7,7 +7,6 @@
 
 #include "experiments/recommend/evaluate.h"
 #include "experiments/recommend/model.h"
-#include "experiments/recommend/perceived.h"
 #include "experiments/recommend/report.h"
 #include "experiments/recommend/savings.h"
 #include "experiments/report/rows.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/engine/engine.h"
+#include "experiments/report/ranks.h"
 
 namespace penumbra::experiments::recommend {
 
@@ -27,11 +28,11 @@ struct Options {
   std::optional<double> budget_ms;     ///< of a frame; empty: real time, 50 ms
   std::optional<double> memory_bytes;  ///< over `none`
   std::string objective = "rms";
-  std::vector<std::string> from;      ///< results.csv of further experiments
-  std::string study;                  ///< results.json of a study, for `perceived`; empty: 2007's
-  std::uint32_t size = 256;           ///< pixels along an edge
-  std::uint32_t light_samples = 256;  ///< of the reference
-  std::string command;                ///< as the report quotes it
+  std::vector<std::string> from;        ///< results.csv of further experiments
+  std::string study = published_ranks;  ///< for `perceived` (perceived_ranks)
+  std::uint32_t size = 256;             ///< pixels along an edge
+  std::uint32_t light_samples = 256;    ///< of the reference
+  std::string command;                  ///< as the report quotes it
   std::function<void(const Progress&)> progress;
 };
 

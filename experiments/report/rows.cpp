@@ -20,6 +20,7 @@ struct Column {
   const char* key;   ///< in a row
   const char* head;  ///< in the report's table; null: not there
   int decimals = 2;
+  bool optional = false;  ///< in the CSV only where any row has it
 };
 
 constexpr Column columns[] = {
@@ -47,6 +48,7 @@ constexpr Column columns[] = {
     {"visibility_rms", "visibility_rms", "visibility rms", 4},
     {"false_shadow", "false_shadow", "false shadow", 4},
     {"missing_shadow", "missing_shadow", "missing shadow", 4},
+    {"perceived", "perceived", "mean rank", 2, true},
 };
 
 bool any_has(const std::vector<json>& rows, const char* key) {
@@ -78,13 +80,18 @@ double number_of(const json& row, const char* key) {
 }
 
 std::string results_csv(const std::vector<json>& rows) {
+  std::vector<const Column*> written;
   std::vector<std::string> names;
-  for (const Column& column : columns) names.emplace_back(column.name);
+  for (const Column& column : columns) {
+    if (column.optional && !any_has(rows, column.key)) continue;
+    written.push_back(&column);
+    names.emplace_back(column.name);
+  }
   names.emplace_back("error");
   std::string csv = csv_line(names);
   for (const json& row : rows) {
     std::vector<std::string> cells;
-    for (const Column& column : columns) cells.push_back(text_of(row, column.key));
+    for (const Column* column : written) cells.push_back(text_of(row, column->key));
     cells.push_back(is_done(row) ? "" : text_of(row.at("error"), "message"));
     csv += csv_line(cells);
   }

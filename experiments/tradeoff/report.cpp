@@ -43,10 +43,12 @@ bool is_none(const json& row) {
 std::string front_figure(const std::vector<json>& rows, const Objective& objective) {
   figures::Front chart;
   chart.frame.title = std::string("Error against time: ") + objective.key;
-  chart.frame.description =
-      "Each technique's own front over its parameters; dashed, the points that nothing beats.";
+  chart.frame.description = objective.by_people
+                                ? "What people ranked; dashed, the points that nothing beats."
+                                : "Each technique's own front over its parameters; dashed, the "
+                                  "points that nothing beats.";
   chart.horizontal = {.title = "frame, ms", .logarithmic = true};
-  chart.vertical = {.title = objective.words, .logarithmic = true};
+  chart.vertical = {.title = objective.words, .logarithmic = !objective.by_people};
   std::vector<json> all;
   for (const std::string& name : techniques_in(rows)) {
     std::vector<json> own;
@@ -112,6 +114,17 @@ void add_needs(Page& page, const std::vector<json>& rows, const Objective& objec
       heads, cells);
 }
 
+void add_words(Page& page, const Ranks& ranks) {
+  std::string text =
+      "Ranks are those that people gave in a study, by the technique or preset that it showed; "
+      "what the search found has none.";
+  text += ranks.of_scene ? " They are of this scene."
+                         : " People did not see this scene: they are of all scenes of the study.";
+  for (const std::string& name : ranks.unknown)
+    text += " " + name + " is no technique of this program.";
+  page.paragraph(text);
+}
+
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -162,7 +175,8 @@ std::vector<std::size_t> front_rows(const std::vector<json>& rows, const std::st
 }
 
 json write_tradeoff_report(const std::filesystem::path& folder, const json& device,
-                           const std::string& command, const std::vector<json>& rows) {
+                           const std::string& command, const std::vector<json>& rows,
+                           const Ranks& ranks) {
   Files files(folder);
   Page page("Error against time");
   add_facts(page, device, command, rows);
@@ -175,11 +189,16 @@ json write_tradeoff_report(const std::filesystem::path& folder, const json& devi
       "a better point may exist that needs two steps which do not help alone.");
   json fronts = json::object();
   std::set<std::size_t> shown;
-  for (const Objective& objective : objectives()) {
+  std::vector<Objective> asked = objectives();
+  if (!ranks.mean.empty()) asked.push_back(perceived);
+  for (const Objective& objective : asked) {
     page.heading(objective.words);
+    if (objective.by_people) add_words(page, ranks);
     files.figure(page, std::string("front-") + objective.key, front_figure(rows, objective),
-                 "Each technique's front over its parameters; dashed, what nothing beats.");
-    add_needs(page, rows, objective);
+                 objective.by_people
+                     ? "What the study showed; dashed, what nothing beats."
+                     : "Each technique's front over its parameters; dashed, what nothing beats.");
+    if (!objective.by_people) add_needs(page, rows, objective);
     json front = json::array();
     std::vector<std::vector<Cell>> cells;
     for (const std::size_t index : front_rows(rows, objective.key)) {
@@ -188,7 +207,7 @@ json write_tradeoff_report(const std::filesystem::path& folder, const json& devi
       cells.push_back({settings_of(rows[index]),
                        {number_of(rows[index], "frame_ms"), 3},
                        {number_of(rows[index], "spread"), 3},
-                       {number_of(rows[index], objective.key), 5}});
+                       {number_of(rows[index], objective.key), objective.by_people ? 2 : 5}});
     }
     page.table("The front", {"technique and parameters", "frame ms", "spread", objective.key},
                cells);

@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "experiments/report/ranks.h"
+
 namespace penumbra::experiments {
 
 /// Both write results.csv, figures/*.svg and report.html and return {"files", "fronts"}: fronts are
-/// rows by objective, the fastest first.
+/// rows by objective, the fastest first. Rows with `perceived` also make a front over ranks.
 nlohmann::json write_tradeoff_report(const std::filesystem::path& folder,
                                      const nlohmann::json& device, const std::string& command,
-                                     const std::vector<nlohmann::json>& rows);
+                                     const std::vector<nlohmann::json>& rows, const Ranks& ranks);
 nlohmann::json write_bias_report(const std::filesystem::path& folder, const nlohmann::json& device,
                                  const std::string& command,
                                  const std::vector<nlohmann::json>& rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "experiments/report/ranks.h"
 #include "experiments/report/rows.h"
 #include "experiments/sweep/grid.h"
 #include "experiments/tradeoff/report.h"
@@ -108,6 +109,17 @@ std::vector<json> search_all(Engine& engine, const TradeoffOptions& options) {
   return rows;
 }
 
+/// Measures what people ranked, and tells their ranks in its rows.
+void add_ranked(Engine& engine, const TradeoffOptions& options, const Ranks& ranks,
+                std::vector<json>& rows) {
+  for (const auto& [name, rank] : ranks.mean) {
+    const json row = engine.measure(run_of(options, name));
+    auto place = std::find(rows.begin(), rows.end(), row);  // a search's defaults, maybe
+    if (place == rows.end()) place = rows.insert(rows.end(), row);
+    (*place)[perceived.key] = rank;
+  }
+}
+
 std::vector<Run> bias_runs(const TradeoffOptions& options) {
   std::vector<Run> runs;
   for (const TechniqueDescription* technique : techniques_of(options)) {
@@ -138,17 +150,22 @@ const std::vector<Objective>& objectives() {
 json tradeoff(const TradeoffOptions& options) {
   if (options.size == 0 || options.size > RenderLimits::max_size)
     throw bad_value("size", "size must be 1 to " + std::to_string(RenderLimits::max_size));
+  if (options.bias && !options.study.empty())
+    throw bad_value("study", "people ranked pictures, not biases: leave out study or bias");
   techniques_of(options);  // throws before a device is made
+  Ranks ranks;
+  if (!options.study.empty()) ranks = perceived_ranks(options.study, options.scene);
   Engine engine(options.engine);
-  const std::vector<json> rows = options.bias
-                                     ? run_all(engine, bias_runs(options), options.progress)
-                                     : search_all(engine, options);
+  std::vector<json> rows = options.bias ? run_all(engine, bias_runs(options), options.progress)
+                                        : search_all(engine, options);
+  add_ranked(engine, options, ranks, rows);
   const json device = {{"name", engine.device().name},
                        {"driver", engine.device().driver},
                        {"type", engine.device().type}};
-  json summary = options.bias
-                     ? write_bias_report(options.engine.folder, device, options.command, rows)
-                     : write_tradeoff_report(options.engine.folder, device, options.command, rows);
+  json summary =
+      options.bias
+          ? write_bias_report(options.engine.folder, device, options.command, rows)
+          : write_tradeoff_report(options.engine.folder, device, options.command, rows, ranks);
   summary["device"] = device;
   summary["rows"] = rows.size();
   summary["measured"] = engine.measured();

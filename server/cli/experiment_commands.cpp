@@ -23,6 +23,7 @@ struct Options : ExperimentOptions {
   std::uint32_t light_samples = 256;
   bool errors = false;
   bool bias = false;
+  std::string study;
 
   void add_to(CLI::App& command) {
     add_common_to(command);
@@ -80,6 +81,7 @@ int run_tradeoff(const Session& session, const Options& options) {
   tradeoff.scene = options.scenes;
   tradeoff.techniques = list_of("techniques", options.techniques);
   tradeoff.bias = options.bias;
+  tradeoff.study = options.study;
   tradeoff.light_samples = options.light_samples;
   if (!options.sizes.empty()) {
     const auto sizes = sizes_of(options.sizes);
@@ -88,7 +90,9 @@ int run_tradeoff(const Session& session, const Options& options) {
   }
   tradeoff.command = "penumbra tradeoff " + options.scenes;
   if (!options.techniques.empty()) tradeoff.command += " --techniques '" + options.techniques + "'";
+  if (!options.sizes.empty()) tradeoff.command += " --size " + options.sizes;
   if (options.bias) tradeoff.command += " --bias";
+  if (!options.study.empty()) tradeoff.command += " --study " + options.study;
   Progress bar("tradeoff");
   experiments::ProgressFile file(options.out);
   tradeoff.progress = shown(bar, file);
@@ -173,6 +177,9 @@ void add_experiment_commands(CLI::App& app, Session& session) {
   command->add_option("--size", tradeoff->sizes, "Edge of the picture in pixels [300]");
   command->add_flag("--bias", tradeoff->bias,
                     "Instead: error over bias, strategy and map size, against exact hard shadows");
+  command->add_option("--study", tradeoff->study,
+                      "results.json of a study: also what people ranked, over time; published: "
+                      "the tables of 2007");
   tradeoff->add_to(*command);
   add_json_flag(*command, session);
   command->callback([tradeoff, &session] {

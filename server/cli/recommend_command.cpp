@@ -116,8 +116,10 @@ void add_recommend_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--from", options->asked.from,
                       "results.csv of sweep --errors or tradeoff, also to learn from");
-  command->add_option("--study", options->asked.study,
-                      "results.json of a study, for perceived [table 4.9 of 2007]");
+  command
+      ->add_option("--study", options->asked.study,
+                   "results.json of a study, for perceived; published: table 4.9 of 2007")
+      ->capture_default_str();
   command->add_option("--size", options->asked.size, "Edge of the picture in pixels")
       ->capture_default_str();
   command

@@ -1,9 +1,11 @@
+#include "scenes/json_text.h"
 #include "server/http/clock.h"
 #include "server/http/event_stream.h"
 #include "server/http/reply.h"
 #include "server/http/routes.h"
 #include "server/http/secrets.h"
 #include "server/http/service.h"
+#include "server/http/studies.h"
 
 namespace penumbra::server::http {
 namespace {
@@ -32,8 +34,19 @@ ExperimentState experiment_at(Call& call) {
   return *state;
 }
 
+/// results.json of the study that the request names; empty where it names none.
+std::string results_for(Service& service, const json& request) {
+  const auto study = study_of_experiment(request);
+  if (!study) return {};
+  const auto record = service.studies.latest_published(*study);
+  if (!record) throw bad_value("study", "there is no published study '" + *study + "'");
+  return scenes::json_text(export_of(service, service.frozen.of(*record)).results());
+}
+
 void post_experiment(Call& call) {
-  const auto state = call.service.experiments.start(call.json(), random_uuid(), utc_now());
+  const json request = call.json();
+  const auto state = call.service.experiments.start(request, results_for(call.service, request),
+                                                    random_uuid(), utc_now());
   call.response.set_header("Location", "/api/v1/experiments/" + state.id);
   send_json(call.response, 202, body_of_experiment(state));
 }

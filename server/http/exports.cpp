@@ -6,7 +6,6 @@
 #include "server/http/reply.h"
 #include "server/http/service.h"
 #include "server/http/studies.h"
-#include "server/http/study_export.h"
 #include "server/storage/folder_files.h"
 #include "study/statistics/report.h"
 
@@ -16,13 +15,7 @@ namespace {
 using nlohmann::json;
 
 StudyExport export_at(Call& call) {
-  auto frozen = published_at(call);
-  auto& studies = call.service.studies;
-  const auto counts = studies.counts(frozen->study.id, frozen->version);
-  const auto pictures = studies.pictures(frozen->study.id, frozen->version);
-  auto measures = measures_shown(*frozen, pictures);
-  return {call.service.participants, std::move(frozen), static_cast<std::size_t>(counts.withdrawn),
-          std::move(measures)};
+  return export_of(call.service, published_at(call));
 }
 
 std::filesystem::path work_folder(const Call& call) {
@@ -123,6 +116,14 @@ void get_figure(Call& call) {
 }
 
 }  // namespace
+
+StudyExport export_of(Service& service, std::shared_ptr<const FrozenStudy> frozen) {
+  const auto counts = service.studies.counts(frozen->study.id, frozen->version);
+  const auto pictures = service.studies.pictures(frozen->study.id, frozen->version);
+  auto measures = measures_shown(*frozen, pictures);
+  return {service.participants, std::move(frozen), static_cast<std::size_t>(counts.withdrawn),
+          std::move(measures)};
+}
 
 void add_export_routes(std::vector<Route>& table) {
   const std::string one = "/api/v1/studies/{id}";

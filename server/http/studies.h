@@ -4,11 +4,15 @@
 
 #include "server/http/frozen_study.h"
 #include "server/http/routes.h"
+#include "server/http/study_export.h"
 
 namespace penumbra::server::http {
 
 /// The version whose answers a call is about: `version` of the query, otherwise the newest
 /// published.
 std::shared_ptr<const FrozenStudy> published_at(Call& call);
+
+/// Its answers, with what was measured of its pictures.
+StudyExport export_of(Service& service, std::shared_ptr<const FrozenStudy> frozen);
 
 }  // namespace penumbra::server::http

@@ -19,10 +19,16 @@ namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
 constexpr std::size_t most_waiting = 32;
+/// As a request's study: the ranks that were published in 2007.
+constexpr auto published_study = "published";
+
+/// What people ranked in a study, in the folder of an experiment that asks for it.
+constexpr auto results_name = "study.json";
+
 constexpr std::size_t most_output = std::size_t{16} << 20;  ///< bytes of a child's summary
 
 /// A key of a request, and how the command takes it.
-enum class Form { scene, list, text, number, flag };
+enum class Form { scene, list, text, number, flag, study };
 struct Key {
   const char* name;
   const char* flag;
@@ -53,13 +59,15 @@ const std::vector<Kind>& kinds() {
         {"size", "--size", Form::number, "256 pixels an edge"},
         {"run_ms", "--run-ms", Form::number, "200 of timed frames"},
         {"light_samples", "--light-samples", Form::number, "256 of the reference"},
-        {"bias", "--bias", Form::flag}}},
+        {"bias", "--bias", Form::flag},
+        {"study", "--study", Form::study, "thesis-2007, a study of this server, or published"}}},
       {"recommend",
        "Which technique for a scene",
        {{"scene", "", Form::scene, "boxes"},
         {"budget_ms", "--budget-ms", Form::number, "4.5 a frame"},
         {"memory_bytes", "--memory-bytes", Form::number, "16777216"},
         {"objective", "--objective", Form::text, "rms, flip, worst or perceived"},
+        {"study", "--study", Form::study, "thesis-2007, for perceived; otherwise published"},
         {"size", "--size", Form::number, "256 pixels an edge"},
         {"run_ms", "--run-ms", Form::number, "200 of timed frames"},
         {"light_samples", "--light-samples", Form::number, "256 of the reference"}}},
@@ -103,11 +111,17 @@ std::string checked_list(const std::string& field, const json& value) {
   return list;
 }
 
-void add_argument(std::vector<std::string>& arguments, const Key& key, const json& value) {
+void add_argument(std::vector<std::string>& arguments, const Key& key, const json& value,
+                  const fs::path& results) {
   const std::string name = key.name, flag = key.flag;
   if (key.form == Form::flag) {
     if (!value.is_boolean()) throw bad_value(name, name + " must be true or false");
     if (value.get<bool>()) arguments.push_back(flag);
+  } else if (key.form == Form::study) {
+    if (!value.is_string()) throw bad_value(name, name + " must be a study's id");
+    checked_text(name, value);
+    arguments.push_back(flag + "=" +
+                        (value == published_study ? value.get<std::string>() : results.string()));
   } else if (key.form == Form::number) {
     if (!value.is_number()) throw bad_value(name, name + " must be a number");
     arguments.push_back(flag + "=" + value.dump());
@@ -162,7 +176,16 @@ json experiment_kinds() {
   return list;
 }
 
-std::vector<std::string> experiment_arguments(const json& request) {
+std::optional<std::string> study_of_experiment(const json& request) {
+  experiment_arguments(request);
+  for (const Key& key : kind_of(request)->keys)
+    if (key.form == Form::study && request.contains(key.name) &&
+        request.at(key.name) != published_study)
+      return request.at(key.name).get<std::string>();
+  return {};
+}
+
+std::vector<std::string> experiment_arguments(const json& request, const fs::path& folder) {
   if (!request.is_object()) throw bad_value("body", "must be an object");
   const Kind* kind = kind_of(request);
   if (kind == nullptr) {
@@ -177,7 +200,7 @@ std::vector<std::string> experiment_arguments(const json& request) {
                                   [&, &wanted = name](const Key& k) { return wanted == k.name; });
     if (key == kind->keys.end())
       throw bad_value(name, "unknown key '" + name + "' of an experiment of this kind");
-    add_argument(arguments, *key, value);
+    add_argument(arguments, *key, value, folder / results_name);
   }
   for (const Key& key : kind->keys)
     if (key.form == Form::scene && !request.contains(key.name))
@@ -213,8 +236,8 @@ void Experiments::load() {
   for (const ExperimentState& state : unfinished) waiting_.push_back(state.id);
 }
 
-ExperimentState Experiments::start(const json& request, const std::string& id,
-                                   const std::string& now) {
+ExperimentState Experiments::start(const json& request, const std::string& results,
+                                   const std::string& id, const std::string& now) {
   experiment_arguments(request);
   const std::lock_guard lock(mutex_);
   if (stopping_) throw Error("draining", "the server is stopping");
@@ -222,6 +245,8 @@ ExperimentState Experiments::start(const json& request, const std::string& id,
     throw Error("busy", std::to_string(waiting_.size()) + " experiments wait already");
   const fs::path folder = options_.folder / id;
   fs::create_directories(folder);
+  if (!results.empty())
+    write_durably(folder / results_name, folder / (std::string(results_name) + ".new"), results);
   write_durably(folder / "request.json", folder / "request.json.new",
                 scenes::json_text({{"request", request}, {"created_at", now}}));
   ExperimentState state{id, request.at("kind"), now, "queued", request, nullptr, nullptr};
@@ -312,7 +337,8 @@ void Experiments::run(const std::string& id) {
   std::vector<std::string> command = options_.program;
   const fs::path folder = options_.folder / id;
   const json request = find(id)->request;
-  for (const std::string& argument : experiment_arguments(request)) command.push_back(argument);
+  for (const std::string& argument : experiment_arguments(request, folder))
+    command.push_back(argument);
   command.insert(command.end(), {"--out=" + folder.string(), "--json"});
   if (kind_of(request)->imports) command.push_back("--data=" + options_.data.string());
   if (!options_.device.empty()) command.push_back("--device=" + options_.device);

@@ -42,8 +42,12 @@ nlohmann::json experiment_kinds();
 
 /// The arguments of `penumbra` for a request {"kind", ...}: its kind, then options as on the
 /// command line; lists may be arrays. Throws bad_value naming the field. Scenes are names, never
-/// paths: what reaches the server must not read its files.
-std::vector<std::string> experiment_arguments(const nlohmann::json& request);
+/// paths: what reaches the server must not read its files. A study's results are in `folder`.
+std::vector<std::string> experiment_arguments(const nlohmann::json& request,
+                                              const std::filesystem::path& folder = {});
+
+/// The study of this server whose results a request needs. Throws as `experiment_arguments`.
+std::optional<std::string> study_of_experiment(const nlohmann::json& request);
 
 /// Runs experiments one after the other, since each wants the device for itself, in a process of
 /// the program that ends with this one. What was queued or running when the server ended goes on
@@ -53,9 +57,10 @@ class Experiments {
   explicit Experiments(ExperimentOptions options);
   ~Experiments() { stop(); }
 
+  /// `results`: results.json of the study that the request names; empty where it names none.
   /// Throws bad_value; busy where many wait.
-  ExperimentState start(const nlohmann::json& request, const std::string& id,
-                        const std::string& now);
+  ExperimentState start(const nlohmann::json& request, const std::string& results,
+                        const std::string& id, const std::string& now);
   std::optional<ExperimentState> find(const std::string& id);
   /// The newest first.
   std::vector<ExperimentState> list();

@@ -202,12 +202,35 @@ json path_difference(Renderer& renderer, const Task& task, const metrics::FrameC
   return metrics::frame_difference(drawn, reference);
 }
 
-json measure_quality(const Task& task, const RenderResult& drawn, const Image8& reference,
+/// Decodes what a picture is judged by, in threads: it is there before the picture is.
+class DecodedReference {
+ public:
+  /// `files` outlive this.
+  DecodedReference(const std::set<std::string>& wants, const ReferencePictures& files) {
+    if (needs_reference(wants))
+      picture_ = std::async([&files] { return scenes::decode_picture(files.image); });
+    if (wants.contains(want::quality))
+      visibility_ = std::async([&files] { return scenes::decode_exr(files.visibility); });
+  }
+  /// Nothing else is to run while frames are timed.
+  void wait() const {
+    if (picture_.valid()) picture_.wait();
+    if (visibility_.valid()) visibility_.wait();
+  }
+  const Image8& picture() { return picture_.get(); }
+  const ImageF& visibility() { return visibility_.get(); }
+
+ private:
+  std::shared_future<Image8> picture_;
+  std::shared_future<ImageF> visibility_;
+};
+
+json measure_quality(const Task& task, const RenderResult& drawn, DecodedReference& truth,
                      std::vector<std::string>& notes) {
-  auto judging = std::async([&task, &drawn] {
-    const ImageF visibility = scenes::decode_exr(task.reference.visibility);
+  auto judging = std::async([&drawn, &visibility = truth.visibility()] {
     return metrics::visibility_error(drawn.visibility, visibility, drawn.judged);
   });
+  const Image8& reference = truth.picture();
   const double flip = metrics::flip(drawn.picture, reference);
   const metrics::VisibilityError error = judging.get();
   if (task.reference.id == task.request.id) notes.push_back("this picture is the reference itself");
@@ -273,11 +296,13 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   request.linear = wanted(want::linear);
   request.uncertainty = wanted(want::noise);
   TaskResult result;
+  DecodedReference reference(task.wants, task.reference);
   RenderResult drawn;
   if (wanted(want::cost)) {
     // Nothing else may draw while frames are timed, and the first may be the only one.
     const DeviceLock alone(DeviceLock::Mode::measure, measure_patience_s);
     drawn = renderer.render(request, control);
+    reference.wait();
     result.cost = measure_cost(renderer, task, drawn, parts, result.notes);
     if (!alone.held()) result.notes.push_back("measured while another render shared the device");
   } else {
@@ -292,7 +317,6 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   result.notes.insert(result.notes.begin(), drawn.notes.begin(), drawn.notes.end());
   result.notes.insert(result.notes.begin(), of_scene.begin(), of_scene.end());
 
-  Image8 reference;
   FilesBeingMade files;
   const Image8& shown = request.diagnostic.empty() ? drawn.picture : drawn.diagnostic;
   if (wanted(want::image)) files.make(want::image, [&] { return scenes::encode_png(shown); });
@@ -301,10 +325,10 @@ TaskResult run_task(Renderer& renderer, const Task& task,
   if (wanted(want::visibility))
     files.make(want::visibility,
                [&] { return scenes::encode_exr(drawn.visibility, drawn.light_names); });
-  if (needs_reference(task.wants)) reference = scenes::decode_picture(task.reference.image);
   if (wanted(want::error_map))
-    files.make(want::error_map,
-               [&] { return scenes::encode_png(metrics::error_map(drawn.picture, reference)); });
+    files.make(want::error_map, [&] {
+      return scenes::encode_png(metrics::error_map(drawn.picture, reference.picture()));
+    });
   if (wanted(want::quality)) result.quality = measure_quality(task, drawn, reference, result.notes);
   files.take(result.artefacts);
   if (along_path)

@@ -8,7 +8,7 @@
 
 #include "experiments/recommend/evaluate.h"
 #include "experiments/recommend/model.h"
-#include "experiments/recommend/perceived.h"
+#include "experiments/report/ranks.h"
 #include "renderer/error.h"
 #include "tests/jobs/temporary_folder.h"
 
@@ -150,11 +150,32 @@ TEST(RecommendResults, come_with_the_program_and_name_techniques_that_there_are)
 }
 
 TEST(RecommendRanks, are_those_of_table_4_9_without_a_study) {
-  const Ranks ranks = perceived_ranks("");
+  const Ranks ranks = perceived_ranks(published_ranks);
   EXPECT_EQ(ranks.mean.size(), 9u);
   EXPECT_EQ(ranks.mean.at("pcf-bilinear-3x3"), 4.4);
   EXPECT_EQ(ranks.mean.at("pcss-nearest"), 4.85);
+  EXPECT_FALSE(ranks.of_scene);
   EXPECT_THROW(perceived_ranks("/none/such.json"), Error);
+}
+
+TEST(RecommendRanks, are_the_scenes_own_where_people_saw_it) {
+  const Ranks car = perceived_ranks(published_ranks, "car");
+  EXPECT_TRUE(car.of_scene);
+  EXPECT_EQ(car.mean.at("soft-shadow-volumes-2007"), 4.09);  // table 4.3
+  EXPECT_FALSE(perceived_ranks(published_ranks, "teapot").of_scene);
+
+  const TemporaryFolder folder;
+  const std::string file = folder.path() / "results.json";
+  const auto rows = [](double rank) {
+    return json::array({{{"technique", "pcss"}, {"weighted_mean_rank", rank}},
+                        {{"technique", "none-such"}, {"weighted_mean_rank", 2.0}}});
+  };
+  const json all{{"overall", {{"techniques", rows(1.5)}}},
+                 {"scenes", json::array({{{"scene", "teapot"}, {"techniques", rows(1.25)}}})}};
+  std::ofstream(file) << json{{"included_sets", {{"all", all}}}};
+  EXPECT_EQ(perceived_ranks(file, "teapot").mean.at("pcss"), 1.25);
+  EXPECT_EQ(perceived_ranks(file, "car").mean.at("pcss"), 1.5);
+  EXPECT_THAT(perceived_ranks(file).unknown, ElementsAre("none-such"));
 }
 
 TEST(RecommendView, turns_cameras_and_lights_about_the_vertical) {
@@ -233,7 +254,7 @@ TEST_F(RecommendOnAScene, tries_in_the_order_in_which_people_ranked) {
   options.objective = "perceived";
   options.scene = "sweep:1x100x1";
   const json found = recommend(options);
-  const Ranks ranks = perceived_ranks("");
+  const Ranks ranks = perceived_ranks(published_ranks);
   double least = 10.0;
   for (const auto& [name, rank] : ranks.mean) least = std::min(least, rank);
   EXPECT_EQ(found.at("recommendation").at("error"), least);

@@ -127,12 +127,45 @@ TEST(Tradeoff, searches_a_scene_and_goes_on_where_it_was) {
   EXPECT_NE(html.find("src=\"data:image/png;base64,iVBORw0KGgo"), std::string::npos);
 }
 
+TEST(Tradeoff, holds_what_people_ranked_against_time) {
+  const TemporaryFolder folder;
+  TradeoffOptions options;
+  options.engine.folder = folder.path();
+  options.engine.timing.run_ms = 5.0;
+  options.scene = "boxes";
+  options.techniques = {"shadow-map"};
+  options.size = 32;
+  options.light_samples = 16;
+  options.runs_per_technique = 2;
+  options.study = published_ranks;
+  const json found = tradeoff(options);
+  const Ranks ranks = perceived_ranks(published_ranks, "boxes");
+  ASSERT_TRUE(ranks.of_scene);
+  // None, the search's two, and what was ranked: the map is among the search's.
+  EXPECT_EQ(found.at("rows"), 3 + ranks.mean.size() - 1);
+  const json& front = found.at("fronts").at("perceived");
+  ASSERT_FALSE(front.empty());
+  double best = 10.0;
+  for (const auto& [name, rank] : ranks.mean) best = std::min(best, rank);
+  EXPECT_EQ(front.back().at("perceived"), best);
+  for (const json& row : front)
+    EXPECT_EQ(row.at("perceived"), ranks.mean.at(row.at("name").get<std::string>()));
+  std::ifstream table(folder.path() / "results.csv");
+  std::string head;
+  std::getline(table, head);
+  EXPECT_NE(head.find(",perceived,"), std::string::npos) << head;
+}
+
 TEST(Tradeoff, refuses_what_has_no_bias_and_presets) {
   TradeoffOptions options;
   options.scene = "boxes";
   options.bias = true;
   options.techniques = {"shadow-volumes"};
   EXPECT_THROW(tradeoff(options), Error);
+  options.techniques = {"shadow-map"};
+  options.study = published_ranks;  // people ranked no biases
+  EXPECT_THROW(tradeoff(options), Error);
+  options.study.clear();
   options.bias = false;
   options.techniques = {"vsm-2007"};
   EXPECT_THROW(tradeoff(options), Error);

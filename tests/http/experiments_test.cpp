@@ -14,17 +14,6 @@ class ExperimentsTest : public RunningServer {
     return researcher->Post("/api/v1/experiments", request.dump(), "application/json");
   }
 
-  /// The experiment once it is over, or as it is after a minute and a half.
-  json over(const std::string& id) {
-    json state;
-    for (int i = 0; i < 900; ++i) {
-      state = body_of(researcher->Get("/api/v1/experiments/" + id), 200, "Experiment");
-      if (state["status"] != "queued" && state["status"] != "running") break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return state;
-  }
-
   const json small{{"kind", "sweep"},
                    {"scenes", {"sweep:1x100x3"}},
                    {"techniques", "shadow-map,vsm"},
@@ -38,7 +27,7 @@ TEST_F(ExperimentsTest, measure_and_report_for_the_researcher_alone) {
   const std::string at = accepted->get_header_value("Location");
   EXPECT_EQ(at, "/api/v1/experiments/" + state["id"].get<std::string>());
   EXPECT_EQ(error_of(client->Get(at), 401), "unauthorized");
-  const json done = over(state["id"]);
+  const json done = experiment_over(state["id"]);
   ASSERT_EQ(done["status"], "done") << done;
   EXPECT_EQ(done["progress"]["done"], 6);  // two sizes of none, shadow-map and vsm
 
@@ -60,7 +49,7 @@ TEST_F(ExperimentsTest, measure_and_report_for_the_researcher_alone) {
   const json list = body_of(researcher->Get("/api/v1/experiments"), 200, "ExperimentList");
   ASSERT_EQ(list["experiments"].size(), 1u);
   restart();
-  EXPECT_EQ(over(state["id"])["status"], "done");
+  EXPECT_EQ(experiment_over(state["id"])["status"], "done");
 }
 
 TEST_F(ExperimentsTest, refuse_files_options_and_keys_that_there_are_not) {
@@ -77,6 +66,9 @@ TEST_F(ExperimentsTest, refuse_files_options_and_keys_that_there_are_not) {
       {{{"kind", "recommend"}}, "scene"},
       {{{"kind", "recommend"}, {"scene", "boxes"}, {"budget_ms", "much"}}, "budget_ms"},
       {{{"kind", "tradeoff"}}, "scene"},
+      {{{"kind", "tradeoff"}, {"scene", "boxes"}, {"study", "none-such"}}, "study"},
+      {{{"kind", "tradeoff"}, {"scene", "boxes"}, {"study", "../study"}}, "study"},
+      {{{"kind", "tradeoff"}, {"scene", "boxes"}, {"study", 7}}, "study"},
       {{{"kind", "tradeoff"}, {"scene", "../x"}}, "scene"}};
   for (const auto& [request, field] : cases) {
     const auto answer = start(request);
@@ -89,7 +81,7 @@ TEST_F(ExperimentsTest, push_techniques_to_where_they_break) {
   const json state = body_of(
       start({{"kind", "stability"}, {"techniques", "shadow-map"}, {"axes", {"small-picture"}}}),
       202, "Experiment");
-  const json done = over(state["id"]);
+  const json done = experiment_over(state["id"]);
   EXPECT_EQ(done["status"], "done");
   EXPECT_EQ(done["progress"]["done"], done["progress"]["total"]);
   const auto table =
@@ -102,7 +94,7 @@ TEST_F(ExperimentsTest, recommend_a_technique_for_a_scene) {
   const json asked = {{"kind", "recommend"}, {"scene", "sweep:1x100x1"}, {"size", 32},
                       {"run_ms", 5},         {"light_samples", 16},      {"memory_bytes", 100000}};
   const json state = body_of(start(asked), 202, "Experiment");
-  ASSERT_EQ(over(state["id"])["status"], "done");
+  ASSERT_EQ(experiment_over(state["id"])["status"], "done");
   const auto report =
       researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/report.html");
   ASSERT_EQ(report->status, 200);
@@ -119,7 +111,7 @@ TEST_F(ExperimentsTest, recommend_a_technique_for_a_scene) {
 TEST_F(ExperimentsTest, measure_claims) {
   const json state = body_of(start({{"kind", "claims"}, {"only", {"P05", "P07"}}, {"quick", true}}),
                              202, "Experiment");
-  EXPECT_EQ(over(state["id"])["status"], "done");
+  EXPECT_EQ(experiment_over(state["id"])["status"], "done");
   const auto table =
       researcher->Get("/api/v1/experiments/" + state["id"].get<std::string>() + "/results.csv");
   EXPECT_EQ(table->status, 200);
@@ -130,7 +122,7 @@ TEST_F(ExperimentsTest, measure_claims) {
 TEST_F(ExperimentsTest, tell_why_one_failed) {
   const json state =
       body_of(start({{"kind", "sweep"}, {"techniques", "paint"}}), 202, "Experiment");
-  const json failed = over(state["id"]);
+  const json failed = experiment_over(state["id"]);
   EXPECT_EQ(failed["status"], "failed");
   EXPECT_EQ(failed["error"]["code"], "not_found");
 }
@@ -148,7 +140,7 @@ TEST_F(ExperimentsTest, stop_when_deleted_and_go_on_after_a_restart) {
             "queued");
   for (const std::string& id : {second, first}) {
     EXPECT_EQ(researcher->Delete("/api/v1/experiments/" + id)->status, 204);
-    EXPECT_EQ(over(id)["status"], "stopped");
+    EXPECT_EQ(experiment_over(id)["status"], "stopped");
   }
   EXPECT_EQ(researcher->Delete("/api/v1/experiments/none-such")->status, 404);
 }

@@ -97,6 +97,17 @@ class RunningServer : public testing::Test {
     return status;
   }
 
+  /// The experiment once it is over, or as it is after a minute and a half.
+  json experiment_over(const std::string& id) {
+    json state;
+    for (int i = 0; i < 900; ++i) {
+      state = body_of(researcher->Get("/api/v1/experiments/" + id), 200, "Experiment");
+      if (state["status"] != "queued" && state["status"] != "running") break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return state;
+  }
+
   TemporaryFolder folder;
   ServeOptions options;  ///< of the next start
   FakeRenders* renders = nullptr;

@@ -66,6 +66,35 @@ std::map<std::string, std::string> line_of(const study::CsvRecord& header,
   return cells;
 }
 
+TEST_F(SimulatedPeople, RanksAreHeldAgainstTimeByAnExperiment) {
+  ASSERT_EQ(simulate("--participants 10 --step 2 --seed 5" + token()), 0);
+  const json asked{{"kind", "tradeoff"}, {"scene", "boxes"},    {"techniques", {"shadow-map"}},
+                   {"size", 24},         {"light_samples", 16}, {"run_ms", 2},
+                   {"study", id}};
+  const auto started = researcher->Post("/api/v1/experiments", asked.dump(), "application/json");
+  const std::string made = started->get_header_value("Location");
+  const json state = body_of(started, 202, "Experiment");
+  ASSERT_EQ(experiment_over(state["id"])["status"], "done");
+  const auto results = body_of(researcher->Get(at + "/results.json"), 200, "Results");
+  std::map<std::string, double> ranks;
+  for (const auto& scene : results["included_sets"]["all"]["scenes"])
+    if (scene["scene"] == "boxes")
+      for (const auto& row : scene["techniques"])
+        ranks[row["technique"]] = row["weighted_mean_rank"];
+  ASSERT_EQ(ranks.size(), 9u);
+  const std::string table = researcher->Get(made + "/results.csv")->body;
+  study::CsvReader reader(table);
+  study::CsvRecord header, record;
+  ASSERT_TRUE(reader.next(header));
+  while (reader.next(record)) {
+    auto line = line_of(header, record);
+    if (line["perceived"].empty()) continue;
+    EXPECT_NEAR(std::stod(line["perceived"]), ranks.at(line["technique"]), 1e-9);
+    ranks.erase(line["technique"]);
+  }
+  EXPECT_TRUE(ranks.empty()) << ranks.begin()->first;
+}
+
 TEST_F(SimulatedPeople, AreSpreadOverTheArmsOfATemplateAndExportedWithThem) {
   auto document = json::parse(researcher->Get("/api/v1/templates/digits-or-shelves")->body);
   document["pages"] = {{{"scene", "boxes"}}, {{"scene", "car"}}, {{"scene", "island"}}};

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace penumbra::experiments {
+
+/// Stands for tables 4.3 to 4.9 of van Sambeek 2007 where a study's results are asked for.
+inline constexpr auto published_ranks = "published";
+
+/// Mean ranks that people gave techniques, 1 most realistic.
+struct Ranks {
+  std::map<std::string, double> mean;  ///< by id of a technique or preset
+  std::vector<std::string> unknown;    ///< names that this program does not have
+  bool of_scene = false;               ///< of the scene that was asked for, not over all
+};
+
+/// From results.json of `penumbra statistics`, or `published_ranks`. Ranks are the scene's where
+/// people saw it, and those over all scenes otherwise. Throws unreadable and bad_value (field
+/// "study").
+Ranks perceived_ranks(const std::string& study, const std::string& scene = "");
+
+}  // namespace penumbra::experiments
