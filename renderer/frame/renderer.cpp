@@ -68,6 +68,7 @@ RenderResult Renderer::render(const RenderRequest& request, const RenderControl&
   const ParameterValues parameters =
       complete_parameters(request.technique->parameters, request.parameters);
   state->shaders.add(request.technique->files);
+  state->pipelines.trim();
   return PictureRun(*state, request, parameters, control).run();
 }
 

@@ -1,5 +1,6 @@
 #include "renderer/vulkan/pipeline.h"
 
+#include <algorithm>
 #include <array>
 #include <sstream>
 #include <stdexcept>
@@ -236,8 +237,23 @@ std::unique_ptr<Pipeline> PipelineCache::start(const ProgramSource& source) {
   return made;
 }
 
+PipelineCache::Slot& PipelineCache::slot_of(const std::string& key) {
+  Slot& slot = pipelines_[key];
+  slot.used = ++uses_;
+  return slot;
+}
+
+void PipelineCache::trim() {
+  if (pipelines_.size() <= most_kept) return;
+  std::vector<std::uint64_t> uses;
+  for (const auto& [key, slot] : pipelines_) uses.push_back(slot.used);
+  const auto oldest_kept = uses.end() - static_cast<std::ptrdiff_t>(most_kept);
+  std::nth_element(uses.begin(), oldest_kept, uses.end());
+  std::erase_if(pipelines_, [&](const auto& entry) { return entry.second.used < *oldest_kept; });
+}
+
 const Pipeline& PipelineCache::graphics(const ProgramSource& source, const GraphicsState& state) {
-  auto& slot = pipelines_[key_of(source) + key_of(state)];
+  auto& slot = slot_of(key_of(source) + key_of(state)).pipeline;
   if (slot) return *slot;
   auto made = start(source);
   const StageList stages(device_.handle, made->program);
@@ -267,7 +283,7 @@ const Pipeline& PipelineCache::compute(const std::string& path, const std::strin
   ProgramSource source;
   source.stages[VK_SHADER_STAGE_COMPUTE_BIT] = path;
   source.preamble = preamble;
-  auto& slot = pipelines_[key_of(source)];
+  auto& slot = slot_of(key_of(source)).pipeline;
   if (slot) return *slot;
   auto made = start(source);
   made->compute = true;

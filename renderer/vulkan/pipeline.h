@@ -85,14 +85,21 @@ struct Pipeline {
   bool compute = false;
 };
 
-/// Compiles programs and keeps pipelines for as long as the device lives.
+/// Compiles programs and keeps the pipelines that were used last.
 class PipelineCache {
  public:
+  /// Pipelines that `trim` leaves; a picture takes about ten. One takes megabytes on lavapipe.
+  static constexpr std::size_t most_kept = 128;
+
   PipelineCache(Device& device, const ShaderLibrary& library);
 
   /// The key is the source and state themselves: equal input gives the same pipeline.
   const Pipeline& graphics(const ProgramSource& source, const GraphicsState& state);
   const Pipeline& compute(const std::string& path, const std::string& preamble = {});
+
+  /// Between pictures: forgets what was not used for longest.
+  void trim();
+  std::size_t size() const { return pipelines_.size(); }
 
   VkSampler sampler(Sampling sampling);
   const ShaderLibrary& library() const { return library_; }
@@ -102,11 +109,18 @@ class PipelineCache {
   void push(VkCommandBuffer commands, const Pipeline& pipeline, const Bindings& bindings);
 
  private:
+  struct Slot {
+    std::unique_ptr<Pipeline> pipeline;
+    std::uint64_t used = 0;  ///< when last, in uses of any
+  };
+
   std::unique_ptr<Pipeline> start(const ProgramSource& source);
+  Slot& slot_of(const std::string& key);
 
   Device& device_;
   const ShaderLibrary& library_;
-  std::unordered_map<std::string, std::unique_ptr<Pipeline>> pipelines_;
+  std::unordered_map<std::string, Slot> pipelines_;
+  std::uint64_t uses_ = 0;
   std::map<Sampling, Owned<VkSampler>> samplers_;
 };
 
