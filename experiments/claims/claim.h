@@ -62,6 +62,9 @@ std::vector<Claim> layout_claims();
 std::vector<Claim> tile_claims();
 std::vector<Claim> tile_cost_claims();
 std::vector<Claim> cost_claims();
+std::vector<Claim> limit_claims();
+std::vector<Claim> fleet_claims();
+std::vector<Claim> run_time_choice_claims();
 std::vector<Claim> waiting_claims();
 
 }  // namespace penumbra::experiments::claims

@@ -1,11 +1,14 @@
 // Claims about filtered maps: what bleeds, what overflows, what bands.
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 #include <string>
 
 #include "experiments/claims/claim.h"
+#include "experiments/claims/hard_light.h"
 #include "experiments/claims/laboratory.h"
 #include "renderer/metrics/metrics.h"
+#include "scenes/generators/scene_builder.h"
 
 namespace penumbra::experiments::claims {
 namespace {
@@ -213,10 +216,100 @@ Outcome q41(Laboratory& lab) {
   return outcome;
 }
 
+/// Flat ground, and on the left of it a low dome under a lamp above them. Its middle is so flat
+/// that no kernel falls back there, and its rim so steep that every one does.
+std::shared_ptr<const Scene> dome_beside_flat() {
+  scenes::SceneBuilder b("dome", "A dome beside flat ground");
+  const scenes::Look grey = b.look("grey", glm::vec3(0.7f));
+  b.ground({-6.0, -6.0}, {6.0, 6.0}, grey);
+  const auto place = glm::translate(glm::dmat4(1.0), glm::dvec3(-1.5, 0.0, 0.0));
+  const auto dome = scenes::transformed(scenes::sphere(1.4, 64, 32),
+                                        glm::scale(place, glm::dvec3(1.0, 0.015, 1.0)));
+  b.place(dome, grey, "dome");
+  b.spot("lamp", {-1.0, 9.0, 0.0}, {-1.0, 0.0, 0.0}, glm::vec3(1.0f), 1.0f, 45.0, LightExtent{});
+  b.camera("main", {0.0, 8.0, 0.01}, {0.0, 0.0, 0.0}, 45.0);
+  return std::make_shared<const Scene>(std::move(b.scene));
+}
+
+/// Share of red pixels, over the columns from `first` to before `end` as shares of the width.
+double red_share(const Image8& picture, double first, double end) {
+  double red = 0.0, all = 0.0;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x) {
+      const double place = (x + 0.5) / picture.width;
+      if (place < first || place >= end) continue;
+      all += 1.0;
+      red += picture.at(x, y, 0) > 150 && picture.at(x, y, 1) < 80;
+    }
+  return red / all;
+}
+
+Outcome q17(Laboratory& lab) {
+  const auto scene = dome_beside_flat();
+  Outcome outcome;
+  double last = 0.0;
+  bool slanted = true;
+  for (const int blur : {1, 3, 5}) {
+    const std::string technique = "esm-linear:blur=" + std::to_string(blur);
+    const Image8 shown = lab.draw(scene, "dome", technique, 0, "fallback").diagnostic;
+    const std::string texels = std::to_string(2 * blur + 1);
+    const double all = red_share(shown, 0.0, 1.0);
+    const double left = red_share(shown, 0.0, 0.5), right = red_share(shown, 0.5, 1.0);
+    outcome.number("share that falls back, " + texels + " texels", all);
+    outcome.number("on the dome's half, " + texels, left);
+    outcome.number("on the flat half, " + texels, right);
+    if (blur > 1) outcome.part(all > last);
+    slanted = slanted && left > right;
+    last = all;
+  }
+  outcome.part(slanted);
+  return outcome;
+}
+
+/// Posts that recede to where many texels of a map lie in a pixel.
+std::shared_ptr<const Scene> receding_posts() {
+  scenes::SceneBuilder b("posts", "Posts that recede");
+  const scenes::Look grey = b.look("grey", glm::vec3(0.7f));
+  b.ground({-8.0, -60.0}, {8.0, 4.0}, grey);
+  for (int z = 0; z < 56; ++z)
+    for (const double x : {-5.0, -3.0, -1.0, 1.0, 3.0, 5.0})
+      b.place(scenes::box({x - 0.15, 0.0, -z - 0.15}, {x + 0.15, 1.2, -z + 0.15}), grey, "post");
+  b.sun({-0.8, -1.0, -0.25}, glm::vec3(1.0f), 1.0f).extent = {};
+  b.camera("main", {0.0, 2.0, 5.0}, {0.0, 1.2, -10.0}, 45.0);
+  return std::make_shared<const Scene>(std::move(b.scene));
+}
+
+Outcome q20(Laboratory& lab) {
+  const auto scene = receding_posts();
+  RenderRequest request = lab.request_of(scene, one_ray);
+  request.supersampling = 16;
+  const RenderResult truth = lab.engine().renderer().render(request);
+  Outcome outcome;
+  const auto far_error = [&](const std::string& mips) {
+    // A map with more texels than the far half has pixels.
+    const auto drawn = lab.draw(scene, "receding posts", "vsm:map_size=2048:blur=0:mips=" + mips);
+    // The horizon lies a little above the middle: below it the far half of what is seen.
+    const double error = error_in_rows(drawn, truth, 0.42, 0.6);
+    outcome.number("far half, mips " + mips, error);
+    return error;
+  };
+  const double plain = far_error("false"), mipped = far_error("true");
+  outcome.part(mipped < plain);
+  return outcome;
+}
+
 }  // namespace
 
 std::vector<Claim> filter_claims() {
   return {
+      {"Q17", "S3 fig. 4.10",
+       "ESM's fallback area grows with the kernel and sits on slanted surfaces",
+       "its share of the picture grows from 3 to 7 texels; to 11; it is larger on a dome than on "
+       "flat "
+       "ground",
+       q17},
+      {"Q20", "S3 fig. 4.4", "mip-mapped VSM cures minification",
+       "its error in the far half of receding posts, against 16 samples a pixel, falls", q20},
       {"Q06", "S0 2.2.4", "4 samples have 5 levels, 9 have 10; bilinear removes the bands",
        "visibilities at an edge askew to the map: 5; 10; more than 10", q06},
       {"Q13", "S3 2.2.1", "VSM equals PCF for parallel planes of caster and receiver",

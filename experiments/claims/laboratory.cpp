@@ -30,25 +30,29 @@ const nlohmann::json& Laboratory::row(const std::string& scene, const std::strin
   run.width = run.height = size == 0 ? scale_.size : size;
   run.light_samples = light_samples == 0 ? scale_.light_samples : light_samples;
   run.truth = truth;
-  const std::string key = scene + " " + technique + " " + std::to_string(run.width) + " " +
+  const nlohmann::json& found = row(run);
+  if (!is_done(found)) {
+    const nlohmann::json& error = found.at("error");
+    throw Error(error.at("code"), error.at("message"), error.at("field"));
+  }
+  return found;
+}
+
+const nlohmann::json& Laboratory::row(const Run& run) {
+  const std::string key = run.scene + " " + run.name + " " + std::to_string(run.width) + " " +
                           std::to_string(run.light_samples) + " " +
-                          std::to_string(static_cast<int>(truth));
+                          std::to_string(static_cast<int>(run.truth)) + " " + run.view.text();
   const auto [place, fresh] = known_.try_emplace(key, rows_.size());
   if (fresh) {
     try {
-      if (before) before(scene + " " + technique);
+      if (before) before(run.scene + " " + run.name);
       rows_.push_back(engine().measure(run));
     } catch (...) {
       known_.erase(place);
       throw;
     }
   }
-  const nlohmann::json& found = rows_[place->second];
-  if (!is_done(found)) {
-    const nlohmann::json& error = found.at("error");
-    throw Error(error.at("code"), error.at("message"), error.at("field"));
-  }
-  return found;
+  return rows_[place->second];
 }
 
 double Laboratory::value(const char* key, const std::string& scene, const std::string& technique,

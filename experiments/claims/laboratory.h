@@ -31,6 +31,8 @@ class Laboratory {
   const nlohmann::json& row(const std::string& scene, const std::string& technique,
                             Truth truth = Truth::none, std::uint32_t size = 0,
                             std::uint32_t light_samples = 0);
+  /// The engine's row of a run, also of one that failed.
+  const nlohmann::json& row(const Run& run);
   /// A number of that row.
   double value(const char* key, const std::string& scene, const std::string& technique,
                Truth truth = Truth::none, std::uint32_t size = 0);
@@ -44,6 +46,10 @@ class Laboratory {
                     const std::string& diagnostic = {});
 
   const Scale& scale() const { return scale_; }
+  /// What `draw` draws, with visibility.
+  RenderRequest request_of(const std::shared_ptr<const Scene>& scene, const std::string& technique,
+                           std::uint32_t size = 0) const;
+
   Engine& engine();
   bool has_engine() const { return engine_ != nullptr; }
   /// All rows, in the order in which they were first asked for.
@@ -52,9 +58,6 @@ class Laboratory {
   std::function<void(const std::string&)> before;
 
  private:
-  RenderRequest request_of(const std::shared_ptr<const Scene>& scene, const std::string& technique,
-                           std::uint32_t size) const;
-
   EngineOptions options_;
   Scale scale_;
   std::unique_ptr<Engine> engine_;

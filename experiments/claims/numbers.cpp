@@ -67,6 +67,42 @@ Outcome q43(Laboratory&) {
   return outcome;
 }
 
+/// Where the ray from a point towards a light meets the plane y = 1; w of the light 0: a direction.
+glm::dvec2 on_occluder(const glm::dvec3& point, const glm::dvec4& light) {
+  const glm::dvec3 towards = glm::dvec3(light) - light.w * point;
+  return glm::dvec2(point.x, point.z) +
+         (1.0 - point.y) / towards.y * glm::dvec2(towards.x, towards.z);
+}
+
+/// Farthest that coordinates interpolated from the corners of a triangle of 8 m lie from those of
+/// its points, metres.
+double error_of_interpolation(const glm::dvec4& light) {
+  const glm::dvec3 corners[] = {{-4.0, 0.0, -4.0}, {4.0, 0.0, -4.0}, {0.0, -1.0, 4.0}};
+  double farthest = 0.0;
+  constexpr int steps = 32;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; i + j <= steps; ++j) {
+      const double a = double(i) / steps, b = double(j) / steps, c = 1.0 - a - b;
+      const glm::dvec2 interpolated = a * on_occluder(corners[0], light) +
+                                      b * on_occluder(corners[1], light) +
+                                      c * on_occluder(corners[2], light);
+      const glm::dvec3 point = a * corners[0] + b * corners[1] + c * corners[2];
+      farthest = std::max(farthest, glm::length(interpolated - on_occluder(point, light)));
+    }
+  return farthest;
+}
+
+Outcome q49(Laboratory&) {
+  const double sun = error_of_interpolation({0.3, 1.0, 0.2, 0.0});
+  const double lamp = error_of_interpolation({0.6, 2.0, 0.4, 1.0});
+  Outcome outcome;
+  outcome.number("metres off, directional", sun);
+  outcome.number("metres off, lamp", lamp);
+  outcome.part(sun < 1e-12);
+  outcome.part(lamp > 0.01);
+  return outcome;
+}
+
 Outcome c23(Laboratory& lab) {
   const auto bytes = [&](const char* scene, const char* technique, std::uint32_t size) {
     return lab.value("memory_bytes", scene, technique, Truth::none, size);
@@ -102,6 +138,10 @@ Outcome c24(Laboratory& lab) {
 
 std::vector<Claim> number_claims() {
   return {
+      {"Q49", "S2 4.1", "coordinates on the occluder may be computed at vertices (assumed)",
+       "interpolated over a triangle they are exact for a directional light; over 1 cm off for a "
+       "lamp",
+       q49},
       {"Q05", "S0 fig. 2.6",
        "averaging depths before comparing is wrong, averaging comparisons gives 5/9 in shadow",
        "the mean depth's comparison says lit; the mean of comparisons is 5/9", q05},

@@ -73,7 +73,8 @@ const std::vector<Claim>& all() {
     std::vector<Claim> claims;
     for (const auto& family : {published_claims(), number_claims(), survey_scene_claims(),
                                volume_claims(), filter_claims(), map_claims(), layout_claims(),
-                               tile_claims(), tile_cost_claims(), cost_claims(), waiting_claims()})
+                               tile_claims(), tile_cost_claims(), cost_claims(), limit_claims(),
+                               fleet_claims(), run_time_choice_claims(), waiting_claims()})
       claims.insert(claims.end(), family.begin(), family.end());
     return claims;
   }();

@@ -59,6 +59,7 @@ const nlohmann::json* Results::find(const std::string& key) const {
 }
 
 void Results::add(const std::string& key, const nlohmann::json& result) {
+  if (rows_.contains(key)) return;
   const std::string line = scenes::json_text({{"key", key}, {"result", result}}) + "\n";
   // One call for the whole line: a kill leaves it or nothing, a full disk a part that read() drops.
   if (::write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))

@@ -20,7 +20,8 @@ class Results {
 
   /// Null where nothing is known.
   const nlohmann::json* find(const std::string& key) const;
-  /// On disk when this returns, so far as the operating system keeps its word.
+  /// On disk when this returns, so far as the operating system keeps its word. The first result of
+  /// a key stays: two processes may have drawn one picture at once.
   void add(const std::string& key, const nlohmann::json& result);
   std::size_t size() const { return rows_.size(); }
 

@@ -50,6 +50,38 @@ void add_tried(Page& page, const json& summary) {
              {"technique and parameters", "frame ms", "bytes", "error", "keeps the budget"}, cells);
 }
 
+/// What was tried, by time and error: dashed, what nothing beats.
+std::string trials_figure(const json& summary) {
+  figures::Front chart;
+  chart.frame.title = "What was tried";
+  chart.frame.description = "Error against time of every trial; dashed, what nothing beats.";
+  chart.horizontal = {.title = "frame, ms", .logarithmic = true};
+  chart.vertical = {.title = summary.at("objective").at("words"), .logarithmic = true};
+  for (const json& row : summary.at("tried")) {
+    const double error = row.at("error");
+    if (!(error > 0.0)) continue;  // exact: it has no place on a logarithmic axis
+    chart.points.push_back({row.at("frame_ms").get<double>(), error, chart.series.size(), {}});
+    chart.series.push_back(row.at("name"));
+  }
+  chart.front = figures::lower_left_front(chart.points);
+  return figures::draw(chart);
+}
+
+/// Pictures of trials by name, from the rows that have one.
+std::vector<Page::Picture> pictures_of(const std::filesystem::path& folder,
+                                       const std::vector<json>& rows,
+                                       const std::vector<std::string>& names) {
+  std::vector<Page::Picture> pictures;
+  for (const std::string& name : names) {
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const json& each) {
+      return is_done(each) && each.contains("picture") && each.at("name") == name;
+    });
+    if (row != rows.end())
+      pictures.push_back({file_text(folder / row->at("picture").get<std::string>()), name});
+  }
+  return pictures;
+}
+
 void add_savings(Page& page, const json& summary) {
   page.heading("What the scene does not need");
   page.paragraph(
@@ -75,6 +107,7 @@ void add_savings(Page& page, const json& summary) {
 
 void add_refused(Page& page, const json& summary) {
   page.heading("What cannot draw this scene");
+  if (summary.at("refused").empty()) return page.paragraph("Nothing was refused.");
   std::vector<std::vector<Cell>> cells;
   for (const json& row : summary.at("refused"))
     cells.push_back({row.at("name").get<std::string>(), row.at("reason").get<std::string>()});
@@ -140,21 +173,23 @@ json write_report(const std::filesystem::path& folder, const json& device,
   page.paragraph(verdict_of(summary));
   for (const json& note : summary.at("recommendation").at("notes"))
     page.paragraph("Note: " + note.get<std::string>());
-  std::vector<Page::Picture> pictures;
-  for (const json& row : rows)
-    if (is_done(row) && row.contains("picture") &&
-        row.at("name") == summary.at("recommendation").at("name") && pictures.empty())
-      pictures.push_back({file_text(folder / row.at("picture").get<std::string>()),
-                          row.at("name").get<std::string>()});
-  page.pictures(pictures);
+  page.pictures(pictures_of(folder, rows, {summary.at("recommendation").at("name")}));
+  page.heading("What was tried");
+  const std::string figure = trials_figure(summary);
+  std::filesystem::create_directories(folder / "figures");
+  write_report_file(folder / "figures" / "trials.svg", figure);
+  page.figure(figure, "Error against time of what was tried; dashed, what nothing beats.");
   add_tried(page, summary);
+  std::vector<std::string> tried;
+  for (const json& row : summary.at("tried")) tried.push_back(row.at("name"));
+  page.pictures(pictures_of(folder, rows, tried));
   add_savings(page, summary);
   add_refused(page, summary);
   page.heading("All runs");
   add_rows(page, rows);
   write_report_file(folder / "results.csv", results_csv(rows));
   write_report_file(folder / "report.html", page.text());
-  return {"results.csv", "report.html"};
+  return {"results.csv", "figures/trials.svg", "report.html"};
 }
 
 json write_evaluation(const std::filesystem::path& folder, const std::string& command,

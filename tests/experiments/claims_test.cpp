@@ -42,7 +42,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 TEST(Claims, of_published_tables_and_of_arithmetic_give_their_known_numbers) {
   const TemporaryFolder folder;
-  const json summary = measure(folder, {"P05", "P07", "Q05", "Q43"});
+  const json summary = measure(folder, {"P03", "P05", "P07", "Q05", "Q43", "Q49"});
   EXPECT_TRUE(summary.at("device").is_null()) << "no picture is needed";
   // R: cor(method = "spearman") of tables 4.2 and 4.9, and of 4.2 and 4.3 to 4.8.
   EXPECT_NEAR(claim_of(summary, "P05").at("numbers").at("Spearman"), -0.2857143, 1e-7);
@@ -51,6 +51,9 @@ TEST(Claims, of_published_tables_and_of_arithmetic_give_their_known_numbers) {
   EXPECT_DOUBLE_EQ(means.at("mean depth"), 267.0 / 9.0);
   EXPECT_DOUBLE_EQ(means.at("mean of shadows"), 5.0 / 9.0);
   EXPECT_DOUBLE_EQ(means.at("shadow of the mean depth"), 0.0);
+  EXPECT_EQ(claim_of(summary, "P03").at("verdict"), "reproduced");
+  EXPECT_LT(claim_of(summary, "Q49").at("numbers").at("metres off, directional"), 1e-12);
+  EXPECT_GT(claim_of(summary, "Q49").at("numbers").at("metres off, lamp"), 0.01);
   const json& tables = claim_of(summary, "Q43").at("numbers");
   EXPECT_DOUBLE_EQ(tables.at("law at 1024"), std::ldexp(1.0, 20 - 24) / 25.0);
   EXPECT_EQ(claim_of(summary, "P05").at("verdict"), "reproduced");
@@ -88,6 +91,28 @@ TEST(Claims, count_bytes_and_vertices_of_tiles_exactly) {
   EXPECT_GT(casters.at("that reach into tiles"), 0);
 }
 
+TEST(Claims, count_what_is_submitted_and_what_leaks) {
+  const TemporaryFolder folder;
+  const json summary = measure(folder, {"C27", "Q03", "Q04"});
+  const json& submitted = claim_of(summary, "C27").at("numbers");
+  EXPECT_EQ(submitted.at("vertices with textures"), 3.0 * 1600.0);  // the aircraft and its apron
+  EXPECT_EQ(submitted.at("vertices with a map"), 2.0 * 3.0 * 1600.0);
+  const json& leaks = claim_of(summary, "Q03").at("numbers");
+  EXPECT_LT(leaks.at("shadow-volumes, which find holes"), 0.02);
+  EXPECT_LT(claim_of(summary, "Q04").at("numbers").at("by the triangle's plane"), 0.02);
+}
+
+TEST(Claims, no_choice_along_a_path_beats_the_best_of_its_kind) {
+  const TemporaryFolder folder;
+  const json summary = measure(folder, {"C14"});
+  const json& regrets = claim_of(summary, "C14").at("numbers");
+  const double scene = regrets.at("regret of the best a scene");
+  EXPECT_GE(scene, 0.0);
+  for (const char* arm : {"regret of one choice for all", "regret of recommend, a scene"})
+    EXPECT_GE(regrets.at(arm).get<double>(), scene - 1e-12) << arm;
+  EXPECT_GE(regrets.at("regret of recommend, a frame"), -1e-12);
+}
+
 TEST(Claims, are_judged_by_the_parts_of_their_rules) {
   EXPECT_EQ(verdict_of({true, true}), Verdict::reproduced);
   EXPECT_EQ(verdict_of({true, false}), Verdict::in_part);
@@ -103,6 +128,13 @@ TEST(Claims, have_ids_of_their_own_and_wait_for_nothing_but_people) {
     EXPECT_EQ(claim.measure == nullptr, claim.needs == Needs::people) << claim.id;
     if (claim.measure == nullptr) waiting.push_back(claim.id);
   }
+  // Numbered without a gap: none is forgotten.
+  for (const auto& [letter, last] : {std::pair{'P', 12}, {'Q', 49}, {'C', 29}})
+    for (int i = 1; i <= last; ++i) {
+      const std::string id = letter + std::string(i < 10 ? "0" : "") + std::to_string(i);
+      EXPECT_TRUE(ids.contains(id)) << id << " is missing";
+    }
+  EXPECT_EQ(ids.size(), 12u + 49u + 29u);
   const TemporaryFolder folder;
   const json summary = measure(folder, waiting);
   for (const std::string& id : waiting)
