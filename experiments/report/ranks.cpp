@@ -56,7 +56,7 @@ Part part_in(const std::string& file, const std::string& scene) {
 
 Ranks perceived_ranks(const std::string& study, const std::string& scene) {
   const Part part = study == published_ranks ? published(scene) : part_in(study, scene);
-  if (part.mean.empty()) throw bad_value("study", "nobody has ranked anything in this study yet");
+  if (part.mean.empty()) throw bad_value("study", "no one has ranked anything in this study yet");
   Ranks ranks;
   ranks.of_scene = part.of_scene;
   for (const auto& [name, mean] : part.mean) {

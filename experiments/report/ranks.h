@@ -6,7 +6,7 @@
 
 namespace penumbra::experiments {
 
-/// Stands for tables 4.3 to 4.9 of van Sambeek 2007 where a study's results are asked for.
+/// Names tables 4.3 to 4.9 of van Sambeek 2007 where a study is asked for.
 inline constexpr auto published_ranks = "published";
 
 /// Mean ranks that people gave techniques, 1 most realistic.
