@@ -283,6 +283,7 @@ Outcome q20(Laboratory& lab) {
   const auto scene = receding_posts();
   RenderRequest request = lab.request_of(scene, one_ray);
   request.supersampling = 16;
+  if (lab.before) lab.before("receding posts, 16 samples a pixel");
   const RenderResult truth = lab.engine().renderer().render(request);
   Outcome outcome;
   const auto far_error = [&](const std::string& mips) {
@@ -305,8 +306,7 @@ std::vector<Claim> filter_claims() {
       {"Q17", "S3 fig. 4.10",
        "ESM's fallback area grows with the kernel and sits on slanted surfaces",
        "its share of the picture grows from 3 to 7 texels; to 11; it is larger on a dome than on "
-       "flat "
-       "ground",
+       "flat ground",
        q17},
       {"Q20", "S3 fig. 4.4", "mip-mapped VSM cures minification",
        "its error in the far half of receding posts, against 16 samples a pixel, falls", q20},

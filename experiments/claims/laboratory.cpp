@@ -91,6 +91,11 @@ RenderRequest Laboratory::request_of(const std::shared_ptr<const Scene>& scene,
   return request;
 }
 
+void need_stencil_fragments(Laboratory& lab) {
+  if (sum_over_passes(lab.row("sweep:10x1600x1", "shadow-volumes"), "volumes", "fragments") == 0.0)
+    throw unsupported("this device counts no fragments in passes that write the stencil alone");
+}
+
 double mean_visibility(const RenderResult& drawn) {
   double sum = 0.0, weight = 0.0;
   for (std::uint32_t y = 0; y < drawn.visibility.height; ++y)

@@ -31,7 +31,9 @@ class Laboratory {
   const nlohmann::json& row(const std::string& scene, const std::string& technique,
                             Truth truth = Truth::none, std::uint32_t size = 0,
                             std::uint32_t light_samples = 0);
-  /// The engine's row of a run, also of one that failed.
+  /// The engine's row of a run, also of one that failed. Its name must tell its technique and its
+  /// parameters; runs that differ in more than that, scene, size, samples, truth and view are not
+  /// told apart.
   const nlohmann::json& row(const Run& run);
   /// A number of that row.
   double value(const char* key, const std::string& scene, const std::string& technique,
@@ -64,6 +66,9 @@ class Laboratory {
   std::map<std::string, std::size_t> known_;  ///< places in rows_
   std::vector<nlohmann::json> rows_;
 };
+
+/// Throws unsupported where the device counts no fragments in passes that write the stencil alone.
+void need_stencil_fragments(Laboratory& lab);
 
 /// Mean over pixels that face the light of the first light's visibility.
 double mean_visibility(const RenderResult& drawn);

@@ -1,4 +1,5 @@
-// Claims that follow from the tables of van Sambeek 2007 alone: no picture is drawn.
+// Claims that follow from the tables of van Sambeek 2007, or from simulated people: no picture is
+// drawn.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -223,9 +224,8 @@ Outcome p03(Laboratory&) {
 std::vector<Claim> published_claims() {
   return {
       {"P03", "S0 6.3", "6 of 61 people read the scale the wrong way round",
-       "of 61 simulated with that share at least 95% of the inverted are flagged; at most 1% of "
-       "the "
-       "honest",
+       "of 61 simulated people of whom six did and three rank at random, at least 95% of the "
+       "inverted are flagged; at most 1% of the honest",
        p03},
       {"P04", "S0 table 4.9", "61 people tell these neighbours of the table apart",
        "each pair of neighbours in different subsets needs at most 61 simulated people whose mean "

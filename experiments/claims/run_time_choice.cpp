@@ -8,6 +8,7 @@
 #include "experiments/claims/laboratory.h"
 #include "experiments/recommend/model.h"
 #include "experiments/report/rows.h"
+#include "renderer/error.h"
 #include "renderer/metrics/frame_change.h"
 
 namespace penumbra::experiments::claims {
@@ -33,7 +34,7 @@ const std::vector<std::string> path_candidates{"shadow-map",
 constexpr int path_frames = 4;
 constexpr double degrees_a_frame = 15.0;
 
-/// Of the scene's frame without shadows.
+/// Of the scene's frames without shadows, on average along the path.
 constexpr double budget_times_none = 2.5;
 
 Run run_of(const Laboratory& lab, const std::string& scene, const std::string& technique,
@@ -43,7 +44,7 @@ Run run_of(const Laboratory& lab, const std::string& scene, const std::string& t
   run.scene = scene;
   run.technique = named.id;
   run.parameters = named.parameters;
-  run.name = technique;
+  run.name = technique + " turned by " + std::to_string(frame * int(degrees_a_frame));
   run.width = run.height = lab.scale().size;
   run.light_samples = lab.scale().light_samples;
   run.truth = Truth::area;
@@ -75,6 +76,7 @@ Path measure_path(Laboratory& lab, const std::string& scene) {
       const nlohmann::json& row = lab.row(run_of(lab, scene, candidate, i));
       if (is_done(row)) frame.known[candidate] = known(row);
     }
+    if (frame.known.empty()) throw unsupported("no technique draws " + scene);
     path.budget.ms += budget_times_none * frame.none.ms / path_frames;
     path.frames.push_back(std::move(frame));
   }
@@ -84,20 +86,22 @@ Path measure_path(Laboratory& lab, const std::string& scene) {
 /// One choice a frame.
 using Choices = std::vector<std::string>;
 
-/// Of all that keeps the budget in every frame of the paths, the least error on average, as a share
-/// of that without shadows; what keeps it nowhere is the fastest.
+/// Error of a choice in a frame, as a share of that without shadows. What cannot be drawn within
+/// the budget counts as drawn without.
+double share_of(const Path& path, const Frame& frame, const std::string& choice) {
+  const auto found = frame.known.find(choice);
+  const bool fits = found != frame.known.end() && path.budget.holds(found->second);
+  return fits ? found->second.error / frame.none.error : 1.0;
+}
+
+/// The least of the shares' means over all frames of the paths.
 std::string best_for(const std::vector<const Path*>& paths) {
   std::string best;
   double least = 0.0;
   for (const std::string& candidate : path_candidates) {
     double sum = 0.0;
     for (const Path* path : paths)
-      for (const Frame& frame : path->frames) {
-        const auto found = frame.known.find(candidate);
-        const bool fits = found != frame.known.end() && path->budget.holds(found->second);
-        // What does not keep it is no better than no shadows.
-        sum += fits ? found->second.error / frame.none.error : 1.0;
-      }
+      for (const Frame& frame : path->frames) sum += share_of(*path, frame, candidate);
     if (best.empty() || sum < least) {
       best = candidate;
       least = sum;
@@ -126,10 +130,8 @@ void count(Arm& arm, const Path& path, const Choices& choices, const Choices& be
   for (std::size_t i = 0; i < path.frames.size(); ++i) {
     const Frame& frame = path.frames[i];
     const auto found = frame.known.find(choices[i]);
-    const bool fits = found != frame.known.end() && path.budget.holds(found->second);
-    const double error = fits ? found->second.error : frame.none.error;
-    arm.missed += !fits;
-    arm.regret += (error - frame.known.at(best[i]).error) / frame.none.error /
+    arm.missed += found == frame.known.end() || !path.budget.holds(found->second);
+    arm.regret += (share_of(path, frame, choices[i]) - share_of(path, frame, best[i])) /
                   static_cast<double>(path.frames.size() * unseen_scenes.size());
   }
 }
@@ -144,6 +146,7 @@ std::vector<PathFrame> two_frames(Laboratory& lab, const std::string& scene,
   std::vector<PathFrame> frames;
   RenderControl control;
   control.path_frame = [&](PathFrame each) { frames.push_back(std::move(each)); };
+  if (lab.before) lab.before(scene + " " + technique);
   lab.engine().renderer().render(request, control);
   return frames;
 }
@@ -180,7 +183,9 @@ void add_jumps(Laboratory& lab, const Path& path, const Choices& best, Jumps& ju
 Outcome c14(Laboratory& lab) {
   std::vector<Path> paths;
   for (const std::string& scene : unseen_scenes) paths.push_back(measure_path(lab, scene));
-  Arm all, own, by_scene, by_frame;
+  std::vector<const Path*> every;
+  for (const Path& path : paths) every.push_back(&path);
+  Arm all, borrowed, own, by_scene, by_frame;
   Jumps jumps;
   for (const Path& path : paths) {
     Choices best, a_frame;
@@ -194,7 +199,8 @@ Outcome c14(Laboratory& lab) {
     const auto always = [&](const std::string& choice) {
       return Choices(path.frames.size(), choice);
     };
-    count(all, path, always(best_for(others)), best);
+    count(all, path, always(best_for(every)), best);
+    count(borrowed, path, always(best_for(others)), best);
     count(own, path, always(best_for({&path})), best);
     count(by_scene, path, always(recommended(lab, path, path.frames.front())), best);
     count(by_frame, path, a_frame, best);
@@ -206,6 +212,7 @@ Outcome c14(Laboratory& lab) {
     outcome.number("frames over the budget, " + name, arm.missed);
   };
   tell("one choice for all", all);
+  tell("the best of the other scenes", borrowed);
   tell("the best a scene", own);
   tell("recommend, a scene", by_scene);
   tell("recommend, a frame", by_frame);
@@ -219,19 +226,21 @@ Outcome c14(Laboratory& lab) {
   outcome.part(own.regret < 0.03 || visible);
   outcome.note =
       "regret: error above that of the best choice in each frame, as a share of that without "
-      "shadows; frames over 2.5 times the frame without shadows count as drawn without";
+      "shadows; the budget is 2.5 times the frame without shadows, and what is over it counts as "
+      "drawn without";
   return outcome;
 }
 
 }  // namespace
 
 std::vector<Claim> run_time_choice_claims() {
-  return {{"C14", "S4 abstract, 1.2",
-           "choosing the algorithm at design time beats choosing it at run time",
-           "on three scenes that the model never saw, around each of which a camera goes: the best "
-           "choice a scene is within 0.03 of the best a frame, or a switch jumps over twice as far "
-           "as frames of one technique do",
-           c14}};
+  return {
+      {"C14", "S4 abstract, 1.2",
+       "choosing the algorithm at design time beats choosing it at run time",
+       "on three scenes that the model never saw, a camera going 45 degrees around each: the best "
+       "choice a scene is within 0.03 of the best a frame, or a switch jumps over twice as far "
+       "as frames of one technique do",
+       c14}};
 }
 
 }  // namespace penumbra::experiments::claims

@@ -31,7 +31,7 @@ RenderResult FrameTimer::time_on_processor(RenderRequest& request, const Cost* d
   else
     once = renderer_.render(request);
   const double first_ms = frame_ms(once.cost);
-  if (first_ms > budget_.longest_ms) return once;
+  if (first_ms > budget_.longest_ms) return drawn == nullptr ? once : renderer_.render(request);
   // The first frame may have waited for compilers: it tells at most what the others take.
   request.frames = frames_within(budget_, first_ms);
   return renderer_.render(request);

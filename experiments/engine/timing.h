@@ -9,7 +9,7 @@ struct TimingBudget {
   double run_ms = 1500.0;    ///< frames that fit into this are timed
   std::uint32_t fewest = 3;  ///< frames, whatever they take, so that a spread is known ...
   std::uint32_t most = 9;
-  double longest_ms = 4000.0;  ///< ... unless one takes longer: it is timed the once it is drawn
+  double longest_ms = 4000.0;  ///< ... unless one takes longer: it is timed once
   double wide_spread = 0.05;   ///< times of a GPU that scatter more are taken again
 };
 
@@ -21,8 +21,7 @@ class FrameTimer {
       : renderer_(renderer), budget_(budget) {}
 
   /// The request's `frames` and `settle` are chosen here. Visibility is for judges, and not drawn.
-  /// `drawn`: the cost of the same picture, where it was drawn already; a frame that takes longer
-  /// than the longest is not drawn again for its time.
+  /// `drawn`: the cost of the same picture with it, where that was drawn already.
   RenderResult time(RenderRequest request, const Cost* drawn = nullptr);
 
  private:

@@ -156,6 +156,8 @@ void check(const Options& options) {
     throw bad_value("budget_ms", "budget_ms must be above 0");
   if (options.memory_bytes && !(*options.memory_bytes >= 0.0))
     throw bad_value("memory_bytes", "memory_bytes must be at least 0");
+  if (options.study != published_ranks && !is_by_people(objective_named(options.objective)))
+    throw bad_value("study", "a study's ranks count for the objective perceived alone");
 }
 
 }  // namespace
@@ -246,7 +248,7 @@ class Search {
 
   /// In the order of people's ranks until one fits.
   Choice by_ranks() {
-    const Ranks ranks = perceived_ranks(options_.study);
+    const Ranks ranks = perceived_ranks(options_.study, options_.scene);
     for (const std::string& name : ranks.unknown)
       refused_.push_back({{"name", name}, {"reason", "no technique or preset has this id"}});
     std::vector<std::string> names;

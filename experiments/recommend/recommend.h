@@ -38,9 +38,9 @@ struct Options {
 
 /// Chooses by the model (model.h) and measures what it proposes. Then tries what the scene does not
 /// need: smaller maps, lights without softness, casters that shadow nothing; each with what it
-/// saves. Writes results.csv and report.html. Goes on where it was stopped. Returns {"device",
-/// "scene", "objective", "budget", "recommendation", "savings", "refused", "tried", "model",
-/// "files", "rows", "measured"}.
+/// saves. Writes results.csv, figures/trials.svg and report.html. Goes on where it was stopped.
+/// Returns {"device", "scene", "objective", "budget", "recommendation", "savings", "refused",
+/// "tried", "model", "files", "rows", "measured"}.
 nlohmann::json recommend(const Options& options);
 
 /// Judges the model on scenes that it never saw (evaluate.h), from `from`, or without it from what

@@ -56,7 +56,9 @@ std::string trials_figure(const json& summary) {
   chart.frame.title = "What was tried";
   chart.frame.description = "Error against time of every trial; dashed, what nothing beats.";
   chart.horizontal = {.title = "frame, ms", .logarithmic = true};
-  chart.vertical = {.title = summary.at("objective").at("words"), .logarithmic = true};
+  // People's ranks lie close together.
+  chart.vertical = {.title = summary.at("objective").at("words"),
+                    .logarithmic = summary.at("objective").at("name") != "perceived"};
   for (const json& row : summary.at("tried")) {
     const double error = row.at("error");
     if (!(error > 0.0)) continue;  // exact: it has no place on a logarithmic axis
@@ -173,7 +175,8 @@ json write_report(const std::filesystem::path& folder, const json& device,
   page.paragraph(verdict_of(summary));
   for (const json& note : summary.at("recommendation").at("notes"))
     page.paragraph("Note: " + note.get<std::string>());
-  page.pictures(pictures_of(folder, rows, {summary.at("recommendation").at("name")}));
+  const std::string chosen = summary.at("recommendation").at("name");
+  page.pictures(pictures_of(folder, rows, {chosen}));
   page.heading("What was tried");
   const std::string figure = trials_figure(summary);
   std::filesystem::create_directories(folder / "figures");
@@ -181,7 +184,8 @@ json write_report(const std::filesystem::path& folder, const json& device,
   page.figure(figure, "Error against time of what was tried; dashed, what nothing beats.");
   add_tried(page, summary);
   std::vector<std::string> tried;
-  for (const json& row : summary.at("tried")) tried.push_back(row.at("name"));
+  for (const json& row : summary.at("tried"))
+    if (row.at("name") != chosen) tried.push_back(row.at("name"));
   page.pictures(pictures_of(folder, rows, tried));
   add_savings(page, summary);
   add_refused(page, summary);

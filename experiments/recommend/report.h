@@ -9,7 +9,7 @@
 
 namespace penumbra::experiments::recommend {
 
-/// Writes results.csv and report.html; returns their names.
+/// Writes results.csv, figures/trials.svg and report.html; returns their names.
 nlohmann::json write_report(const std::filesystem::path& folder, const nlohmann::json& device,
                             const std::string& command, const nlohmann::json& summary,
                             const std::vector<nlohmann::json>& rows);

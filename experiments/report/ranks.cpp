@@ -5,6 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "experiments/engine/engine.h"
 #include "renderer/error.h"
 #include "study/van_sambeek_2007.h"
 #include "techniques/registry.h"
@@ -56,17 +57,19 @@ Part part_in(const std::string& file, const std::string& scene) {
 
 Ranks perceived_ranks(const std::string& study, const std::string& scene) {
   const Part part = study == published_ranks ? published(scene) : part_in(study, scene);
-  if (part.mean.empty()) throw bad_value("study", "no one has ranked anything in this study yet");
   Ranks ranks;
   ranks.of_scene = part.of_scene;
   for (const auto& [name, mean] : part.mean) {
     try {
-      techniques::resolve(name);
+      const NamedTechnique named = read_technique(name);
+      techniques::resolve(named.id, named.parameters);
       ranks.mean[name] = mean;
     } catch (const Error&) {
       ranks.unknown.push_back(name);
     }
   }
+  if (ranks.mean.empty())
+    throw bad_value("study", "people have ranked no technique of this program in this study");
   return ranks;
 }
 

@@ -42,7 +42,8 @@ bool is_none(const json& row) {
 
 std::string front_figure(const std::vector<json>& rows, const Objective& objective) {
   figures::Front chart;
-  chart.frame.title = std::string("Error against time: ") + objective.key;
+  chart.frame.title = objective.by_people ? "Ranks against time"
+                                          : std::string("Error against time: ") + objective.key;
   chart.frame.description = objective.by_people
                                 ? "What people ranked; dashed, the points that nothing beats."
                                 : "Each technique's own front over its parameters; dashed, the "

@@ -58,10 +58,13 @@ std::vector<const TechniqueDescription*> techniques_of(const TradeoffOptions& op
   return list;
 }
 
+/// `technique` as read_technique takes it.
 Run run_of(const TradeoffOptions& options, const std::string& technique) {
+  const NamedTechnique named = read_technique(technique);
   Run run;
   run.scene = options.scene;
-  run.technique = technique;
+  run.technique = named.id;
+  run.parameters = named.parameters;
   run.width = run.height = options.size;
   run.light_samples = options.light_samples;
   run.truth = options.bias ? Truth::hard : Truth::area;
@@ -69,11 +72,25 @@ Run run_of(const TradeoffOptions& options, const std::string& technique) {
   return run;
 }
 
-std::vector<json> search_all(Engine& engine, const TradeoffOptions& options) {
+/// Tells the rank of the newest row, or of an earlier one of the same run.
+void add_rank(std::vector<json>& rows, double rank) {
+  const auto same = std::find_if(rows.begin(), rows.end(), [&](const json& row) {
+    return row.at("technique") == rows.back().at("technique") &&
+           row.at("given") == rows.back().at("given");
+  });
+  if (same != rows.end() - 1) rows.pop_back();
+  (*same)[perceived.key] = rank;
+  // Against itself what judges has no error to tell.
+  if (same->at("family") == "truth")
+    for (const Objective& objective : objectives()) same->erase(objective.key);
+}
+
+std::vector<json> search_all(Engine& engine, const TradeoffOptions& options, const Ranks& ranks) {
   const auto list = techniques_of(options);
   std::vector<json> rows;
   const auto start = std::chrono::steady_clock::now();
-  Progress now{0, 1 + list.size() * options.runs_per_technique, 0, {}, {}};
+  const std::size_t searched = 1 + list.size() * options.runs_per_technique;
+  Progress now{0, searched + ranks.mean.size(), 0, {}, {}};
   const auto measure = [&](const Run& run) {
     now.what = run.technique;
     now.measured = engine.measured();
@@ -103,24 +120,14 @@ std::vector<json> search_all(Engine& engine, const TradeoffOptions& options) {
            });
     now.done = 1 + (i + 1) * options.runs_per_technique;
   }
+  for (const auto& [name, rank] : ranks.mean) {
+    measure(run_of(options, name));
+    add_rank(rows, rank);
+  }
   now.what.clear();
   now.done = now.total;
   if (options.progress) options.progress(now);
   return rows;
-}
-
-/// Measures what people ranked, and tells their ranks in its rows.
-void add_ranked(Engine& engine, const TradeoffOptions& options, const Ranks& ranks,
-                std::vector<json>& rows) {
-  for (const auto& [name, rank] : ranks.mean) {
-    const json row = engine.measure(run_of(options, name));
-    auto place = std::find(rows.begin(), rows.end(), row);  // a search's defaults, maybe
-    if (place == rows.end()) place = rows.insert(rows.end(), row);
-    (*place)[perceived.key] = rank;
-    // Against itself what judges has no error to tell.
-    if (place->at("family") == "truth")
-      for (const Objective& objective : objectives()) place->erase(objective.key);
-  }
 }
 
 std::vector<Run> bias_runs(const TradeoffOptions& options) {
@@ -159,9 +166,9 @@ json tradeoff(const TradeoffOptions& options) {
   Ranks ranks;
   if (!options.study.empty()) ranks = perceived_ranks(options.study, options.scene);
   Engine engine(options.engine);
-  std::vector<json> rows = options.bias ? run_all(engine, bias_runs(options), options.progress)
-                                        : search_all(engine, options);
-  add_ranked(engine, options, ranks, rows);
+  const std::vector<json> rows = options.bias
+                                     ? run_all(engine, bias_runs(options), options.progress)
+                                     : search_all(engine, options, ranks);
   const json device = {{"name", engine.device().name},
                        {"driver", engine.device().driver},
                        {"type", engine.device().type}};

@@ -92,7 +92,9 @@ int run_tradeoff(const Session& session, const Options& options) {
   if (!options.techniques.empty()) tradeoff.command += " --techniques '" + options.techniques + "'";
   if (!options.sizes.empty()) tradeoff.command += " --size " + options.sizes;
   if (options.bias) tradeoff.command += " --bias";
-  if (!options.study.empty()) tradeoff.command += " --study " + options.study;
+  if (!options.study.empty())
+    tradeoff.command +=
+        " --study '" + std::filesystem::path(options.study).filename().string() + "'";
   Progress bar("tradeoff");
   experiments::ProgressFile file(options.out);
   tradeoff.progress = shown(bar, file);

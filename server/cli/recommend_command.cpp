@@ -32,6 +32,8 @@ std::string command_of(const RecommendOptions& given) {
   if (asked.budget_ms) text << " --budget-ms " << *asked.budget_ms;
   if (asked.memory_bytes) text << " --memory-bytes " << *asked.memory_bytes;
   text << " --objective " << asked.objective;
+  if (asked.study != experiments::published_ranks)
+    text << " --study '" << std::filesystem::path(asked.study).filename().string() << "'";
   for (const std::string& file : asked.from) text << " --from " << file;
   if (!given.evaluate) text << " --size " << asked.size;
   return text.str();
@@ -118,7 +120,8 @@ void add_recommend_command(CLI::App& app, Session& session) {
                       "results.csv of sweep --errors or tradeoff, also to learn from");
   command
       ->add_option("--study", options->asked.study,
-                   "results.json of a study, for perceived; published: table 4.9 of 2007")
+                   "results.json of a study, for perceived: ranks of the scene where it showed it; "
+                   "published: tables 4.3 to 4.9 of 2007")
       ->capture_default_str();
   command->add_option("--size", options->asked.size, "Edge of the picture in pixels")
       ->capture_default_str();

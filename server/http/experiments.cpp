@@ -1,3 +1,5 @@
+#include <map>
+
 #include "scenes/json_text.h"
 #include "server/http/clock.h"
 #include "server/http/event_stream.h"
@@ -34,13 +36,51 @@ ExperimentState experiment_at(Call& call) {
   return *state;
 }
 
-/// results.json of the study that the request names; empty where it names none.
+/// What a study showed, by picture: a technique or preset with the parameters given to it, as
+/// ID[:NAME=VALUE]... Pictures that were uploaded are left out.
+std::map<std::string, std::string> techniques_shown(const study::Study& study) {
+  std::map<std::string, std::string> shown;
+  for (const study::Page& page : study.pages)
+    for (const study::Picture& picture : page.pictures) {
+      if (!picture.own.empty()) continue;
+      std::string name = picture.technique;
+      for (const auto& [key, value] : picture.parameters.items())
+        name += ":" + key + "=" +
+                (value.is_string() ? value.get<std::string>() : scenes::json_text(value));
+      shown.try_emplace(picture.id, name);
+    }
+  return shown;
+}
+
+/// The mean ranks alone, by what was shown: nothing of persons is kept beside an experiment.
+json ranks_of(const json& part, const std::map<std::string, std::string>& shown) {
+  json rows = json::array();
+  for (const json& row : part.at("techniques"))
+    if (const auto name = shown.find(row.at("technique")); name != shown.end())
+      rows.push_back(
+          {{"technique", name->second}, {"weighted_mean_rank", row.at("weighted_mean_rank")}});
+  return {{"techniques", rows}};
+}
+
+/// The ranks of the study that the request names, shaped as its results.json; empty where it names
+/// none.
 std::string results_for(Service& service, const json& request) {
   const auto study = study_of_experiment(request);
   if (!study) return {};
   const auto record = service.studies.latest_published(*study);
   if (!record) throw bad_value("study", "there is no published study '" + *study + "'");
-  return scenes::json_text(export_of(service, service.frozen.of(*record)).results());
+  const auto frozen = service.frozen.of(*record);
+  const auto shown = techniques_shown(frozen->study);
+  auto exported = export_of(service, frozen);
+  const json& all = exported.results().at("included_sets").at("all");
+  json scenes_of = json::array();
+  for (const json& part : all.at("scenes")) {
+    scenes_of.push_back(ranks_of(part, shown));
+    scenes_of.back()["scene"] = part.at("scene");
+  }
+  return scenes::json_text(
+      json{{"included_sets",
+            {{"all", {{"overall", ranks_of(all.at("overall"), shown)}, {"scenes", scenes_of}}}}}});
 }
 
 void post_experiment(Call& call) {

@@ -12,7 +12,7 @@ namespace penumbra::server::http {
 /// published.
 std::shared_ptr<const FrozenStudy> published_at(Call& call);
 
-/// Its answers, with what was measured of its pictures.
+/// The answers to a published version, with what was measured of its pictures.
 StudyExport export_of(Service& service, std::shared_ptr<const FrozenStudy> frozen);
 
 }  // namespace penumbra::server::http

@@ -286,6 +286,7 @@ TEST_F(RecommendOnAScene, names_the_field_that_is_wrong) {
   EXPECT_EQ(field_of([](Options& o) { o.budget_ms = std::nan(""); }), "budget_ms");
   EXPECT_EQ(field_of([](Options& o) { o.memory_bytes = -1.0; }), "memory_bytes");
   EXPECT_EQ(field_of([](Options& o) { o.objective = "beauty"; }), "objective");
+  EXPECT_EQ(field_of([](Options& o) { o.study = "results.json"; }), "study");  // not for rms
   EXPECT_EQ(field_of([](Options& o) { o.size = 0; }), "size");
   EXPECT_EQ(field_of([](Options& o) { o.from = {"/none/such.csv"}; }), "from");
   EXPECT_EQ(field_of([](Options& o) { o.scene = "nowhere"; }), "scene");
