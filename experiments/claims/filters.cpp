@@ -216,8 +216,8 @@ Outcome q41(Laboratory& lab) {
   return outcome;
 }
 
-/// Flat ground, and on the left of it a low dome under a lamp above them. Its middle is so flat
-/// that no kernel falls back there, and its rim so steep that every one does.
+/// Flat ground, and on the left of it a low dome under a lamp above them. It is the steeper the
+/// farther from its middle: the wider the kernel, the farther in it falls back.
 std::shared_ptr<const Scene> dome_beside_flat() {
   scenes::SceneBuilder b("dome", "A dome beside flat ground");
   const scenes::Look grey = b.look("grey", glm::vec3(0.7f));

@@ -97,16 +97,23 @@ TEST(Tradeoff, fronts_hold_what_nothing_beats) {
   EXPECT_THAT(front_rows(rows, "flip"), ElementsAre(0, 1, 3));
 }
 
-TEST(Tradeoff, searches_a_scene_and_goes_on_where_it_was) {
-  const TemporaryFolder folder;
+/// A search of one technique in small pictures.
+TradeoffOptions small_search(const TemporaryFolder& folder, const std::string& scene,
+                             std::size_t runs) {
   TradeoffOptions options;
   options.engine.folder = folder.path();
-  options.engine.timing.run_ms = 10.0;
-  options.scene = "sweep:1x100x1";
+  options.engine.timing.run_ms = 5.0;
+  options.scene = scene;
   options.techniques = {"shadow-map"};
   options.size = 32;
   options.light_samples = 16;
-  options.runs_per_technique = 6;
+  options.runs_per_technique = runs;
+  return options;
+}
+
+TEST(Tradeoff, searches_a_scene_and_goes_on_where_it_was) {
+  const TemporaryFolder folder;
+  const TradeoffOptions options = small_search(folder, "sweep:1x100x1", 6);
   const json first = tradeoff(options);
   EXPECT_EQ(first.at("rows"), 7);
   // The fastest of a front is at most as exact as the others, and none is the fastest of all or
@@ -129,14 +136,7 @@ TEST(Tradeoff, searches_a_scene_and_goes_on_where_it_was) {
 
 TEST(Tradeoff, holds_what_people_ranked_against_time) {
   const TemporaryFolder folder;
-  TradeoffOptions options;
-  options.engine.folder = folder.path();
-  options.engine.timing.run_ms = 5.0;
-  options.scene = "boxes";
-  options.techniques = {"shadow-map"};
-  options.size = 32;
-  options.light_samples = 16;
-  options.runs_per_technique = 2;
+  TradeoffOptions options = small_search(folder, "boxes", 2);
   options.study = published_ranks;
   const json found = tradeoff(options);
   const Ranks ranks = perceived_ranks(published_ranks, "boxes");
