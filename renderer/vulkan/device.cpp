@@ -1,5 +1,6 @@
 #include "renderer/vulkan/device.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -172,6 +173,13 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
   throw bad_value("device", "no Vulkan device \"" + wanted + "\"; there are:" + list);
 }
 
+/// A driver on the processor allocates what it sorts into tiles, and frees it, with every pass; by
+/// default glibc hands such memory to the system at once and takes it again page by page.
+void keep_freed_memory() {
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that it accepts
+  ::mallopt(M_TRIM_THRESHOLD, 256 << 20);
+}
+
 }  // namespace
 
 void check(VkResult result, const char* call) {
@@ -207,6 +215,7 @@ Device::Device(const RendererOptions& options) {
     const std::size_t index = choose(infos, options.device);
     physical = devices[index];
     info = infos[index];
+    if (info.type == "cpu") keep_freed_memory();
     vkGetPhysicalDeviceProperties(physical, &properties);
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
     create_logical_device();
