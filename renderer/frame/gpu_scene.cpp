@@ -1,6 +1,7 @@
 #include "renderer/frame/gpu_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
@@ -18,10 +19,31 @@ struct SurfaceVertex {
   glm::vec3 normal;
   glm::vec2 uv;
   std::uint32_t color;
+  glm::vec3 facet;  ///< unit normal, as wound, of the triangle that has its first corner here
 };
-static_assert(sizeof(SurfaceVertex) == 24, "as pipeline.cpp declares the vertex layout");
+static_assert(sizeof(SurfaceVertex) == 36, "as pipeline.cpp declares the vertex layout");
 
 constexpr std::uint32_t white = 0xffffffffu;
+
+/// Of positions rounded to floats, relative: a few units in their last place.
+constexpr double position_rounding = 2.4e-7;
+
+/// Unit normal of a triangle by its winding. Corners that lie on floats lose what the normal of a
+/// flat facet, given with all of them, still has.
+glm::vec3 facet_normal(const std::array<glm::vec3, 3>& corners,
+                       const std::array<const SurfaceVertex*, 3>& given) {
+  const glm::dvec3 a(corners[0]);
+  const glm::dvec3 along = glm::dvec3(corners[1]) - a, aside = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 across = glm::cross(along, aside);
+  const double area = glm::length(across);
+  const glm::vec3 first = given[0]->normal;
+  if (!(area > 0.0) || !std::isfinite(area)) return first;
+  const glm::dvec3 facet = across / area;
+  if (given[1]->normal != first || given[2]->normal != first) return glm::vec3(facet);
+  const double doubt =
+      position_rounding * glm::length(a) * std::max(glm::length(along), glm::length(aside)) / area;
+  return glm::length(glm::dvec3(first) - facet) < doubt ? first : glm::vec3(facet);
+}
 
 }  // namespace
 
@@ -100,11 +122,14 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   constexpr VkBufferUsageFlags vertex =
       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
-  positions_ = upload(device, ledger_, "positions", position_list_.data(),
-                      position_list_.size() * 12, vertex);
+  std::vector<glm::vec3> positions = position_list_;
+  const std::vector<std::uint32_t> surface_indices = add_facets(positions);
+  positions_ = upload(device, ledger_, "positions", positions.data(), positions.size() * 12, vertex);
   surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(),
                      surface_list_.size(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   indices_ = upload(device, ledger_, "indices", index_list_.data(), index_list_.size() * 4, index);
+  surface_indices_ = upload(device, ledger_, "surface indices", surface_indices.data(),
+                            surface_indices.size() * 4, index);
   surface_list_ = {};
   upload_materials(device);
 }
@@ -172,6 +197,9 @@ void GpuScene::add_range(const Part& part) {
   range.casts_shadow = uses_[part.instance].casts;
   range.double_sided = scene_->materials[primitive.material].double_sided;
   range.masked = part.holes;
+  range.colored = std::any_of(mesh.colors.begin(), mesh.colors.end(), [](const auto& color) {
+    return glm::packUnorm4x8(color) != white;
+  });
   range.low = glm::vec3(std::numeric_limits<float>::max());
   range.high = -range.low;
   const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
@@ -217,7 +245,7 @@ void GpuScene::split_long_triangles(std::uint32_t first_index, std::uint32_t ins
     const float length = glm::length(vertex.normal);
     *surface(static_cast<std::uint32_t>(position_list_.size() - 1)) = {
         length > 0.0f ? vertex.normal / length : vertex.normal, vertex.uv,
-        glm::packUnorm4x8(vertex.color)};
+        glm::packUnorm4x8(vertex.color), glm::vec3(0.0f)};
   }
 }
 
@@ -225,6 +253,36 @@ void GpuScene::flatten() {
   add_vertices();
   for (const Part& part : find_parts())
     if (part.primitive->index_count > 0) add_range(part);
+}
+
+std::vector<std::uint32_t> GpuScene::add_facets(std::vector<glm::vec3>& positions) {
+  std::vector<std::uint32_t> indices = index_list_;
+  std::vector<bool> taken(positions.size());
+  const auto surface = [&](std::uint32_t index) {
+    return reinterpret_cast<SurfaceVertex*>(surface_list_.data()) + index;
+  };
+  for (const DrawRange& range : ranges_) {
+    if (!range.visible) continue;
+    for (std::uint32_t i = range.first_index; i < range.first_index + range.index_count; i += 3) {
+      const std::array<std::uint32_t, 3> corner{index_list_[i], index_list_[i + 1],
+                                                index_list_[i + 2]};
+      const glm::vec3 facet =
+          facet_normal({positions[corner[0]], positions[corner[1]], positions[corner[2]]},
+                       {surface(corner[0]), surface(corner[1]), surface(corner[2])});
+      std::uint32_t own = corner[0];
+      if (taken[own] && surface(own)->facet != facet) {
+        own = static_cast<std::uint32_t>(positions.size());
+        positions.push_back(positions[corner[0]]);
+        surface_list_.resize(surface_list_.size() + sizeof(SurfaceVertex));
+        *surface(own) = *surface(corner[0]);
+        indices[i] = own;
+      } else {
+        taken[own] = true;
+      }
+      surface(own)->facet = facet;
+    }
+  }
+  return indices;
 }
 
 void GpuScene::upload_materials(vulkan::Device& device) {

@@ -28,7 +28,8 @@ struct DrawRange {
   bool visible = true;       ///< as the plan has it
   bool casts_shadow = true;  ///< as the plan has it
   bool double_sided = false;
-  bool masked = false;  ///< has holes
+  bool masked = false;   ///< has holes
+  bool colored = false;  ///< its corners have colours of their own
 };
 
 /// The origin of coordinates on the device, and how far from it surfaces matter.
@@ -87,6 +88,8 @@ class GpuScene {
   const vulkan::Buffer& position_buffer() const { return positions_; }
   const vulkan::Buffer& surface_buffer() const { return surfaces_; }
   const vulkan::Buffer& index_buffer() const { return indices_; }
+  /// The same triangles for drawing surfaces: the first corner of each tells its facet.
+  const vulkan::Buffer& surface_index_buffer() const { return surface_indices_; }
   const vulkan::Buffer& material_buffer() const { return materials_; }
   /// White where the material has no texture.
   const vulkan::Image& texture_of(std::uint32_t material) const;
@@ -131,6 +134,10 @@ class GpuScene {
   glm::dmat4 world_from_object(std::uint32_t instance) const;
   void flatten();
   bool used(std::size_t instance) const { return uses_[instance].visible || uses_[instance].casts; }
+  /// Gives every visible triangle's first corner the facet's normal. Where one vertex begins
+  /// several triangles it is repeated at the end of `positions` and of the surfaces; returns the
+  /// indices of all triangles with these.
+  std::vector<std::uint32_t> add_facets(std::vector<glm::vec3>& positions);
   void upload_materials(vulkan::Device& device);
   void find_coarse_coordinates();
 
@@ -147,7 +154,7 @@ class GpuScene {
   std::vector<DrawRange> ranges_;
   std::vector<std::byte> surface_list_;  ///< freed after upload
   vulkan::MemoryLedger ledger_;
-  vulkan::Buffer positions_, surfaces_, indices_, materials_;
+  vulkan::Buffer positions_, surfaces_, indices_, surface_indices_, materials_;
   std::vector<vulkan::Image> textures_;  ///< one per scene texture, empty where unused, then white
   mutable std::map<std::type_index, std::shared_ptr<const void>> derived_;
   mutable std::map<std::string, std::vector<ResourceCost>> derived_memory_;  ///< by requirement

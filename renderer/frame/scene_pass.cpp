@@ -61,23 +61,24 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
   source.preamble = "#define DECODES " + std::to_string(gamma.decodes) + "\n";
-  const auto with = [](vulkan::ProgramSource program, const char* line) {
-    program.preamble += line;
+  const auto program_of = [&](const DrawRange& range) {
+    const bool textured = scene.scene().materials[range.material].texture >= 0;
+    vulkan::ProgramSource program = source;
+    if (textured || range.colored || range.masked) program.preamble += "#define COLOR_VARIES\n";
+    if (textured) program.preamble += "#define TEXTURED\n";
+    if (textured && gamma.textures_as_stored) program.preamble += "#define TEXTURES_AS_STORED\n";
+    // A program that may discard is run before depth is tested: for masks alone.
+    if (range.masked) program.preamble += "#define MASKED\n";
     return program;
   };
-  vulkan::ProgramSource textured_source = with(source, "#define TEXTURED\n");
-  if (gamma.textures_as_stored) textured_source.preamble += "#define TEXTURES_AS_STORED\n";
-  // A program that may discard is run before depth is tested: for masks alone.
-  const char* masked = "#define MASKED\n";
-  const vulkan::ProgramSource programs[2][2] = {{source, with(source, masked)},
-                                                {textured_source, with(textured_source, masked)}};
   state.vertex_input = vulkan::VertexInput::surface;
   state.depth_compare = VK_COMPARE_OP_GREATER;
   state.depth_write = true;
   const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
-  vkCmdBindIndexBuffer(commands.handle(), scene.index_buffer().handle(), 0, VK_INDEX_TYPE_UINT32);
+  vkCmdBindIndexBuffer(commands.handle(), scene.surface_index_buffer().handle(), 0,
+                       VK_INDEX_TYPE_UINT32);
 
   // Neighbouring ranges of one material are drawn at once.
   const auto& ranges = scene.ranges();
@@ -94,13 +95,13 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     std::uint32_t count = first.index_count;
     std::size_t next = i + 1;
     while (next < ranges.size() && ranges[next].material == first.material &&
-           ranges[next].masked == first.masked && visible(ranges[next]))
+           ranges[next].masked == first.masked && ranges[next].colored == first.colored &&
+           visible(ranges[next]))
       count += ranges[next++].index_count;
-    const bool textured = scene.scene().materials[first.material].texture >= 0;
-    if (textured)
+    if (scene.scene().materials[first.material].texture >= 0)
       bindings.texture("surface_texture", scene.texture_of(first.material),
                        vulkan::Sampling::linear_repeat);
-    commands.bind(pipelines.graphics(programs[textured][first.masked], state), bindings);
+    commands.bind(pipelines.graphics(program_of(first), state), bindings);
     commands.constants(first.material);
     commands.cull(first.double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);

@@ -33,8 +33,16 @@ View view_of(const CameraMatrices& camera) {
   return view;
 }
 
+/// At most: a vertex that begins several triangles is repeated unless these lie in one plane. There
+/// are two lists of indices, with and without repeated vertices.
 std::uint64_t geometry_bytes(const Mesh& mesh) {
-  return mesh.positions.size() * vertex_bytes + mesh.indices.size() * sizeof(std::uint32_t);
+  std::vector<bool> begins(mesh.positions.size());
+  std::uint64_t vertices = mesh.positions.size();
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    if (begins[mesh.indices[i]]) ++vertices;
+    begins[mesh.indices[i]] = true;
+  }
+  return vertices * vertex_bytes + 2 * mesh.indices.size() * sizeof(std::uint32_t);
 }
 
 std::uint64_t texture_bytes(const Texture& texture) {
@@ -144,11 +152,13 @@ class Planner {
   }
 
   void explain_instances() {
+    std::vector<std::uint64_t> mesh_bytes;
+    for (const Mesh& mesh : scene_.meshes) mesh_bytes.push_back(geometry_bytes(mesh));
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Instance& instance = scene_.instances[i];
       const InstanceUse& use = plan_.instances[i];
       const bool uploaded = use.visible || use.casts;
-      const std::uint64_t bytes = geometry_bytes(scene_.meshes[instance.mesh]);
+      const std::uint64_t bytes = mesh_bytes[instance.mesh];
       line("surfaces", instance.name, use.visible,
            seen_[i].empty() ? "outside the camera's view" : "the camera may see it",
            use.visible || !uploaded ? bytes : 0);

@@ -9,8 +9,8 @@
 
 namespace penumbra {
 
-/// Of a vertex on the device: its position, and its normal, texture coordinates and colour.
-inline constexpr std::uint64_t vertex_bytes = 12 + 24;
+/// Of a vertex on the device: its position, and its normal, texture coordinates, colour and facet.
+inline constexpr std::uint64_t vertex_bytes = 12 + 36;
 
 /// What of a scene takes part in a render.
 struct InstanceUse {

@@ -50,10 +50,11 @@ VertexLayout vertex_layout(VertexInput input) {
   layout.bindings.push_back({0, 12, VK_VERTEX_INPUT_RATE_VERTEX});
   layout.attributes.push_back({0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0});
   if (input == VertexInput::surface) {
-    layout.bindings.push_back({1, 24, VK_VERTEX_INPUT_RATE_VERTEX});
+    layout.bindings.push_back({1, 36, VK_VERTEX_INPUT_RATE_VERTEX});
     layout.attributes.push_back({1, 1, VK_FORMAT_R32G32B32_SFLOAT, 0});
     layout.attributes.push_back({2, 1, VK_FORMAT_R32G32_SFLOAT, 12});
     layout.attributes.push_back({3, 1, VK_FORMAT_R8G8B8A8_UNORM, 20});
+    layout.attributes.push_back({4, 1, VK_FORMAT_R32G32B32_SFLOAT, 24});
   }
   return layout;
 }

@@ -46,7 +46,7 @@ class Bindings {
   std::map<std::string, Entry> entries_;
 };
 
-enum class VertexInput { none, position, surface };  // surface: position, normal, uv, colour
+enum class VertexInput { none, position, surface };  // surface: position, normal, uv, colour, facet
 enum class Blend { off, add };
 
 struct StencilFace {
