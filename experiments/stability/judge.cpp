@@ -194,7 +194,10 @@ Truth judge(const Scene& scene, std::uint32_t width, std::uint32_t height, std::
 Verdict compare(const Truth& truth, const Scene& scene, const RenderResult& result) {
   Verdict verdict;
   verdict.non_finite = result.non_finite_pixels;
-  const glm::dvec3 base = scene.materials.at(0).base_color;
+  // As the geometry buffer keeps it: square roots in 255 steps.
+  const glm::dvec3 root =
+      glm::round(255.0 * glm::sqrt(glm::dvec3(scene.materials.at(0).base_color)));
+  const glm::dvec3 base = root * root / (255.0 * 255.0);
   const glm::dvec3 ambient = base * glm::dvec3(scene.ambient);
   const double exposure = scene.exposure;
   double squares = 0.0;

@@ -5,6 +5,7 @@
 #include "renderer/error.h"
 #include "renderer/frame/common_parameters.h"
 #include "renderer/frame/host_copy.h"
+#include "renderer/frame/lit_part.h"
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/scene_pass.h"
 #include "renderer/plan/memory_check.h"
@@ -61,6 +62,12 @@ bool any(const std::vector<std::unique_ptr<LightPass>>& lights, const Needs& nee
                      [&](const auto& light) { return light && needs(light->needs()); });
 }
 
+vulkan::ProgramSource resolve_program(const std::string& definition) {
+  return {{{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+           {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve.frag"}},
+          definition};
+}
+
 bool has_many_points(const Requirements& needs) {
   return needs.light_points > 1;
 }
@@ -94,6 +101,8 @@ FrameTargets::Wanted FrameRun::wanted_targets(bool in_rounds) const {
   check_uncertainty();
   FrameTargets::Wanted wanted;
   wanted.stencil = any(lights_, [](const Requirements& needs) { return needs.stencil; });
+  wanted.emitted = setup_.scene.emits();
+  wanted.radiance = !light_finishes();
   wanted.light_sums = any(lights_, has_many_points);
   wanted.uncertainty =
       (request_.uncertainty || request_.error_bound > 0.0 || draws_uncertainty()) &&
@@ -159,6 +168,8 @@ vulkan::Bindings FrameRun::frame_bindings() {
   bindings.buffer("FaultBlock", state_.faults.whole());
   bindings.texture("geometry_position", targets_.geometry.position, Sampling::nearest);
   bindings.texture("geometry_words", targets_.geometry.words, Sampling::nearest);
+  if (targets_.geometry.emitted)
+    bindings.texture("geometry_emitted", targets_.geometry.emitted, Sampling::nearest);
   return bindings;
 }
 
@@ -179,10 +190,12 @@ void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
                   glm::mat4(setup_.matrices.clip_from_world), gamma_treatment(setup_.parameters));
   });
   draw_lights(bindings, index, progress);
-  resolve(bindings, false);
+  resolve(bindings);
   state_.recorder.end();
-  if (fault_counts().unfinished_invocations > 0)
-    throw device_error("loops of " + std::to_string(fault_counts().unfinished_invocations) +
+  std::uint32_t unfinished = 0;  // renderer/shaders/faults.glsl
+  std::memcpy(&unfinished, state_.faults.mapped(), sizeof(unfinished));
+  if (unfinished > 0)
+    throw device_error("loops of " + std::to_string(unfinished) +
                        " shader invocations ended before their work was done");
 }
 
@@ -197,7 +210,7 @@ void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index
                                  state_.recorder,
                                  state_.constants,
                                  targets_.geometry,
-                                 request_.visibility ? &targets_.visibility_samples : nullptr,
+                                 light_output(i == first_light()),
                                  &targets_.light_sums,
                                  uncertainty(),
                                  bindings,
@@ -217,16 +230,15 @@ void FrameRun::encode(const ImageF& linear) {
   write_float(state_.device, targets_.linear, linear);
   state_.constants.reset();
   std::memset(state_.faults.mapped(), 0, state_.faults.size());
-  const vulkan::Bindings bindings = frame_bindings();
+  vulkan::Bindings bindings = frame_bindings();
   state_.recorder.begin(false);
-  resolve(bindings, true);
+  LightPass::Output output;
+  output.formats = {FrameTargets::picture_format};
+  output.colors = {{targets_.picture.slice(0), false, {}}};
+  bindings.texture("linear_picture", targets_.linear, Sampling::nearest);
+  draw_resolve(bindings, output,
+               {{resolve_program("#define FROM_LINEAR\n"), whole(), VK_COMPARE_OP_ALWAYS}});
   state_.recorder.end();
-}
-
-FaultCounts FrameRun::fault_counts() const {
-  FaultCounts counts;
-  std::memcpy(&counts, state_.faults.mapped(), sizeof(counts));
-  return counts;
 }
 
 std::vector<std::string> FrameRun::notes() const {
@@ -237,33 +249,97 @@ std::vector<std::string> FrameRun::notes() const {
   return notes;
 }
 
-void FrameRun::resolve(const vulkan::Bindings& bindings, bool from_linear) {
-  const Window& window = setup_.window;
-  vulkan::ProgramSource source;
-  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve.frag"}};
-  vulkan::GraphicsState state;
-  state.color_formats = {FrameTargets::picture_format};
-  vulkan::RenderTargets targets{
-      window.width, window.height, {{targets_.picture.slice(0), false, {}}}};
-  vulkan::Bindings all = bindings;
-  if (from_linear) {
-    source.preamble = "#define FROM_LINEAR\n";
-    all.texture("linear_picture", targets_.linear, Sampling::nearest);
+bool FrameRun::light_finishes() const {
+  return setup_.side == 1 && std::count(plan_.lights.begin(), plan_.lights.end(), true) <= 1;
+}
+
+LightPass::Output FrameRun::light_output(bool first) const {
+  LightPass::Output output;
+  if (light_finishes()) {
+    output = picture_output();
+    output.definitions += "#define FINISHES\n";
   } else {
-    all.texture("radiance", targets_.geometry.radiance, Sampling::nearest);
-    if (setup_.side == 1) source.preamble = "#define ONE_SAMPLE\n";
-    if (targets_.linear) {
-      source.preamble += "#define WITH_LINEAR\n";
-      state.color_formats.push_back(FrameTargets::linear_format);
-      targets.colors.push_back({targets_.linear.slice(0), false, {}});
-    }
+    output.formats = {FrameTargets::radiance_format};
+    output.colors = {{targets_.radiance.slice(0), first, {}}};
+    output.blend = vulkan::Blend::add;
   }
-  const vulkan::Pipeline& pipeline = state_.pipelines.graphics(source, state);
+  if (request_.visibility) {
+    output.definitions += "#define WITH_VISIBILITY\n#define VISIBILITY_LOCATION " +
+                          std::to_string(output.formats.size()) + "\n";
+    output.formats.push_back(FrameTargets::visibility_format);
+    output.colors.push_back({targets_.visibility_samples.slice(0), true, {}});
+  }
+  return output;
+}
+
+LightPass::Output FrameRun::picture_output() const {
+  LightPass::Output output;
+  output.formats = {FrameTargets::picture_format};
+  output.colors = {{targets_.picture.slice(0), false, {}}};
+  if (targets_.geometry.emitted) output.definitions = "#define EMISSIVE\n";
+  if (targets_.linear) {
+    output.definitions += "#define WITH_LINEAR\n";
+    output.formats.push_back(FrameTargets::linear_format);
+    output.colors.push_back({targets_.linear.slice(0), false, {}});
+  }
+  return output;
+}
+
+std::vector<FrameRun::Resolve> FrameRun::unfinished_parts() const {
+  const Scene& scene = *request_.scene;
+  const auto constant = [](const std::string& definition) {
+    return vulkan::ProgramSource{
+        {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/constant_color.vert"},
+         {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/constant_color.frag"}},
+        definition};
+  };
+  const std::string sky = "#define SKY\n";
+  std::vector<Resolve> parts{
+      {scene.background_low == scene.background_high ? constant(sky) : resolve_program(sky),
+       whole(), VK_COMPARE_OP_EQUAL}};
+  const bool dark = scene.ambient == glm::vec3(0.0f) && !targets_.geometry.emitted;
+  const std::size_t light = first_light();
+  const VkRect2D lit = light < lights_.size() ? lights_[light]->lit_part() : VkRect2D{};
+  for (const VkRect2D& rest : outside(lit, setup_.window.width, setup_.window.height))
+    parts.push_back(
+        {dark ? constant({}) : resolve_program("#define UNLIT\n"), rest, VK_COMPARE_OP_LESS});
+  return parts;
+}
+
+void FrameRun::resolve(const vulkan::Bindings& bindings) {
+  if (light_finishes()) {
+    draw_resolve(bindings, picture_output(), unfinished_parts());
+    return;
+  }
+  vulkan::Bindings all = bindings;
+  all.texture("radiance", targets_.radiance, Sampling::nearest);
+  draw_resolve(all, picture_output(),
+               {{resolve_program(setup_.side == 1 ? "#define ONE_SAMPLE\n" : ""), whole(),
+                 VK_COMPARE_OP_ALWAYS}});
+}
+
+void FrameRun::draw_resolve(const vulkan::Bindings& bindings, const LightPass::Output& output,
+                            std::vector<Resolve> parts) {
+  vulkan::RenderTargets targets;
+  targets.width = setup_.window.width;
+  targets.height = setup_.window.height;
+  targets.colors = output.colors;
+  vulkan::GraphicsState state;
+  state.color_formats = output.formats;
+  if (parts.front().depth != VK_COMPARE_OP_ALWAYS) {
+    targets.depth = targets_.geometry.depth.slice(0);
+    state.depth_format = targets.depth_format = targets_.geometry.depth.description().format;
+    targets.depth_read_only = state.depth_test = true;
+  }
   state_.recorder.pass("resolve", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
-    commands.bind(pipeline, all);
-    commands.full_screen_triangle();
+    for (Resolve& part : parts) {
+      part.program.preamble += output.definitions;
+      state.depth_compare = part.depth;
+      commands.bind(state_.pipelines.graphics(part.program, state), bindings);
+      vkCmdSetScissor(commands.handle(), 0, 1, &part.area);
+      commands.full_screen_triangle();
+    }
     commands.end_rendering();
   });
 }

@@ -6,12 +6,6 @@
 
 namespace penumbra {
 
-/// As renderer/shaders/faults.glsl has it.
-struct FaultCounts {
-  std::uint32_t non_finite_pixels = 0;
-  std::uint32_t unfinished_invocations = 0;
-};
-
 /// The passes of one render, and what they draw into: a window of the picture at a time, with some
 /// of the lights' points at a time.
 class FrameRun {
@@ -34,7 +28,6 @@ class FrameRun {
   const CameraMatrices& picture_camera() const { return setup_.picture_matrices; }
   Uncertainty* uncertainty() const { return targets_.uncertainty.get(); }
   const std::vector<std::unique_ptr<LightPass>>& lights() const { return lights_; }
-  FaultCounts fault_counts() const;
   std::vector<std::string> notes() const;  ///< sorted, each once
   /// Device memory of the technique, beside what every picture takes.
   std::vector<ResourceCost> technique_memory() const;
@@ -50,7 +43,23 @@ class FrameRun {
   vulkan::Bindings frame_bindings();
   void draw_lights(const vulkan::Bindings& bindings, std::uint32_t index,
                    const std::function<void(double)>& progress);
-  void resolve(const vulkan::Bindings& bindings, bool from_linear);
+  /// Whether the one light there is, if any, writes finished pixels: they have one sample.
+  bool light_finishes() const;
+  LightPass::Output light_output(bool first) const;
+  /// What encodes pixels beside a light's pass, without shader stages' definitions of its own.
+  LightPass::Output picture_output() const;
+  void resolve(const vulkan::Bindings& bindings);
+  /// A program over some of the picture.
+  struct Resolve {
+    vulkan::ProgramSource program;
+    VkRect2D area;
+    VkCompareOp depth;  ///< what the geometry's depth is to be beside infinity's
+  };
+  VkRect2D whole() const { return {{0, 0}, {setup_.window.width, setup_.window.height}}; }
+  /// What is left where the one light has finished what it may reach: sky, and other surfaces.
+  std::vector<Resolve> unfinished_parts() const;
+  void draw_resolve(const vulkan::Bindings& bindings, const LightPass::Output& output,
+                    std::vector<Resolve> parts);
   void resolve_visibility(const vulkan::Bindings& bindings, std::uint32_t light);
 
   Renderer::State& state_;

@@ -18,10 +18,11 @@ FrameTargets::FrameTargets(vulkan::Device& device, const Window& window, std::ui
     return vulkan::Image(device, ledger, name, description);
   };
   geometry = make_geometry_buffer(device, ledger, window.width * side, window.height * side,
-                                  wanted.stencil);
+                                  wanted.stencil, wanted.emitted);
   picture = make("picture", picture_format, 1);
   if (wanted.linear)
     linear = make("linear picture", linear_format, 1, VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  if (wanted.radiance) radiance = make("radiance", radiance_format, side);
   if (wanted.light_sums)
     light_sums = make("light sums", linear_format, side, VK_IMAGE_USAGE_STORAGE_BIT);
   if (wanted.uncertainty)

@@ -10,6 +10,8 @@ namespace penumbra {
 struct FrameTargets {
   struct Wanted {
     bool stencil = false;     ///< beside the geometry buffer's depth
+    bool emitted = false;     ///< in the geometry buffer
+    bool radiance = false;    ///< of several lights or samples, before it is resolved
     bool light_sums = false;  ///< for lights of many points
     bool uncertainty = false;
     bool linear = false;  ///< the picture before it is encoded
@@ -24,6 +26,7 @@ struct FrameTargets {
   GeometryBuffer geometry;
   vulkan::Image picture;             ///< encoded; by pixel, as are those below unless noted
   vulkan::Image linear;              ///< with exposure, or none
+  vulkan::Image radiance;            ///< linear light of the lights so far, by sample
   vulkan::Image light_sums;          ///< radiance and visibility of the light at hand, by sample
   vulkan::Image visibility_samples;  ///< of the light at hand
   vulkan::Image visibility;          ///< a layer a light
@@ -31,6 +34,7 @@ struct FrameTargets {
   std::unique_ptr<Uncertainty> uncertainty;
 
   static constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM;
+  static constexpr VkFormat radiance_format = VK_FORMAT_R32G32B32A32_SFLOAT;
   static constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
   static constexpr VkFormat visibility_format = VK_FORMAT_R32G32_SFLOAT;
 };

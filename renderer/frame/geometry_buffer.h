@@ -9,12 +9,12 @@ namespace penumbra {
 struct GeometryBuffer {
   static constexpr VkFormat position_format = VK_FORMAT_R32G32B32A32_SFLOAT;
   static constexpr VkFormat words_format = VK_FORMAT_R32G32B32A32_UINT;
-  static constexpr VkFormat radiance_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  static constexpr VkFormat emitted_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 
-  vulkan::Image position;  ///< xyz world, w 1 on a surface and 0 on background
+  vulkan::Image position;  ///< xyz world, w 0 on background, otherwise see geometry_buffer.glsl
   vulkan::Image words;     ///< packed surface, see geometry_buffer.glsl
   vulkan::Image depth;     ///< reversed: 1 near, 0 infinity
-  vulkan::Image radiance;  ///< linear light so far
+  vulkan::Image emitted;   ///< linear light, or none where nothing visible emits any
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 };

@@ -124,7 +124,8 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
   std::vector<glm::vec3> positions = position_list_;
   const std::vector<std::uint32_t> surface_indices = add_facets(positions);
-  positions_ = upload(device, ledger_, "positions", positions.data(), positions.size() * 12, vertex);
+  positions_ =
+      upload(device, ledger_, "positions", positions.data(), positions.size() * 12, vertex);
   surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(),
                      surface_list_.size(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   indices_ = upload(device, ledger_, "indices", index_list_.data(), index_list_.size() * 4, index);
@@ -197,9 +198,8 @@ void GpuScene::add_range(const Part& part) {
   range.casts_shadow = uses_[part.instance].casts;
   range.double_sided = scene_->materials[primitive.material].double_sided;
   range.masked = part.holes;
-  range.colored = std::any_of(mesh.colors.begin(), mesh.colors.end(), [](const auto& color) {
-    return glm::packUnorm4x8(color) != white;
-  });
+  range.colored = std::any_of(mesh.colors.begin(), mesh.colors.end(),
+                              [](const auto& color) { return glm::packUnorm4x8(color) != white; });
   range.low = glm::vec3(std::numeric_limits<float>::max());
   range.high = -range.low;
   const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
@@ -283,6 +283,12 @@ std::vector<std::uint32_t> GpuScene::add_facets(std::vector<glm::vec3>& position
     }
   }
   return indices;
+}
+
+bool GpuScene::emits() const {
+  return std::any_of(ranges_.begin(), ranges_.end(), [&](const DrawRange& range) {
+    return range.visible && scene_->materials[range.material].emissive != glm::vec3(0.0f);
+  });
 }
 
 void GpuScene::upload_materials(vulkan::Device& device) {

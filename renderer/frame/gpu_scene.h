@@ -76,6 +76,8 @@ class GpuScene {
   /// The part of a box in the scene's coordinates that lies within reach, in world space; may be
   /// empty.
   Bounds near_part(const Bounds& box) const;
+  /// Whether anything visible emits light.
+  bool emits() const;
   /// What this scene loses by single precision, shown with the result.
   const std::vector<std::string>& notes() const { return notes_; }
   /// Of an instance that is used: its first vertex among positions().

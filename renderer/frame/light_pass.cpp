@@ -174,27 +174,22 @@ void LightPass::add_sum(const Frame& frame, const vulkan::Bindings& bindings) {
   });
 }
 
-/// Draws a program over all surfaces that adds a light to radiance and visibility.
+/// Draws a program over the surfaces that this light may reach.
 void LightPass::draw_light(
     const Frame& frame, const std::string& fragment_stage,
     const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of) {
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, fragment_stage}};
-  source.preamble = declarations_;
+  source.preamble = declarations_ + frame.output.definitions;
   if (needs_.shade_each_point) source.preamble += "#define SHADE_EACH_POINT\n";
-  if (frame.visibility != nullptr) source.preamble += "#define WITH_VISIBILITY\n";
   vulkan::GraphicsState state;
-  state.color_formats = {GeometryBuffer::radiance_format};
-  state.blend = vulkan::Blend::add;
+  state.color_formats = frame.output.formats;
+  state.blend = frame.output.blend;
   vulkan::RenderTargets targets;
   targets.width = frame.geometry.width;
   targets.height = frame.geometry.height;
-  targets.colors = {{frame.geometry.radiance.slice(0), false, {}}};
-  if (frame.visibility != nullptr) {
-    state.color_formats.push_back(frame.visibility->description().format);
-    targets.colors.push_back({frame.visibility->slice(0), true, {}});
-  }
+  targets.colors = frame.output.colors;
   // The triangle lies at infinity: only what is nearer, a surface, is shaded.
   state.depth_format = targets.depth_format = frame.geometry.depth.description().format;
   state.depth_test = true;
@@ -203,9 +198,7 @@ void LightPass::draw_light(
   targets.depth_read_only = true;
   const vulkan::Pipeline& pipeline = frame.pipelines.graphics(source, state);
   const vulkan::Bindings all = bindings_of(pipeline);
-  const VkRect2D reached =
-      seen_part(fit_.receivers, setup_.scene.origin(), setup_.matrices.clip_from_world,
-                targets.width, targets.height);
+  const VkRect2D reached = lit_part();
   frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
     commands.begin_rendering(targets);
     vkCmdSetScissor(commands.handle(), 0, 1, &reached);
@@ -213,6 +206,11 @@ void LightPass::draw_light(
     commands.full_screen_triangle();
     commands.end_rendering();
   });
+}
+
+VkRect2D LightPass::lit_part() const {
+  return seen_part(fit_.receivers, setup_.scene.origin(), setup_.matrices.clip_from_world,
+                   setup_.width(), setup_.height());
 }
 
 void LightPass::clear_sum(const Frame& frame) {

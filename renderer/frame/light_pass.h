@@ -38,6 +38,14 @@ class LightPass {
   bool tells_error() const { return needs_.light_points <= 1 || has_scrambles_; }
   const std::vector<ResourceCost>& memory() const { return ledger_.entries; }
 
+  /// What a light's pass is drawn into, and the definitions that say so to its shader.
+  struct Output {
+    std::vector<VkFormat> formats;
+    std::vector<vulkan::ColorTarget> colors;
+    vulkan::Blend blend = vulkan::Blend::off;
+    std::string definitions;
+  };
+
   struct Frame {
     vulkan::Device& device;
     vulkan::PipelineCache& pipelines;
@@ -45,13 +53,15 @@ class LightPass {
     vulkan::Recorder& recorder;
     vulkan::ConstantArena& constants;
     const GeometryBuffer& geometry;
-    const vulkan::Image* visibility;  ///< samples of this light, or null
-    const vulkan::Image* light_sum;   ///< sums over light points, where a light has many
-    Uncertainty* uncertainty;         ///< or null
+    Output output;
+    const vulkan::Image* light_sum;  ///< sums over light points, where a light has many
+    Uncertainty* uncertainty;        ///< or null
     vulkan::Bindings frame_bindings;
     std::uint32_t frame_index;
     std::vector<std::string>& notes;
   };
+  /// The samples that it may reach.
+  VkRect2D lit_part() const;
   /// Chooses the points that draw() goes through, of those that a pixel has; a light that has no
   /// more than one point, or another number than the picture, goes through all its own each time.
   void choose_points(PointRange round);

@@ -33,4 +33,21 @@ VkRect2D seen_part(std::span<const Bounds> boxes, const glm::dvec3& origin,
           {static_cast<std::uint32_t>(extent.x), static_cast<std::uint32_t>(extent.y)}};
 }
 
+std::vector<VkRect2D> outside(const VkRect2D& part, std::uint32_t width, std::uint32_t height) {
+  const auto left = static_cast<std::uint32_t>(part.offset.x);
+  const auto top = static_cast<std::uint32_t>(part.offset.y);
+  const std::uint32_t right = left + part.extent.width;
+  const std::uint32_t bottom = top + part.extent.height;
+  std::vector<VkRect2D> rest;
+  const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t w, std::uint32_t h) {
+    if (w > 0 && h > 0)
+      rest.push_back({{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, {w, h}});
+  };
+  add(0, 0, width, top);
+  add(0, top, left, bottom - top);
+  add(right, top, width - right, bottom - top);
+  add(0, bottom, width, height - bottom);
+  return rest;
+}
+
 }  // namespace penumbra

@@ -24,6 +24,17 @@ void paste(Image<T>& whole, const Image<T>& part, const Window& window,
                 &whole.at(window.x * scale, window.y * scale + y, 0));
 }
 
+/// Returns how many pixels were not: those that are no numbers, see encoding.glsl.
+std::uint64_t make_opaque(Image8& picture) {
+  std::uint64_t found = 0;
+  for (std::size_t alpha = 3; alpha < picture.pixels.size(); alpha += 4)
+    if (picture.pixels[alpha] == 0) {
+      picture.pixels[alpha] = 255;
+      ++found;
+    }
+  return found;
+}
+
 std::string in_levels(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.3g", value);
@@ -203,8 +214,9 @@ void PictureRun::finish_window(const Window& window) {
     if (targets.linear) linear = read_float(state_.device, targets.linear, 4);
     read_visibility(visibility, judged);
   }
-  now_.non_finite_pixels += frame_.fault_counts().non_finite_pixels;
-  paste(now_.picture, read_rgba8(state_.device, targets.picture), window, request_);
+  Image8 picture = read_rgba8(state_.device, targets.picture);
+  now_.non_finite_pixels += make_opaque(picture);
+  paste(now_.picture, picture, window, request_);
   paste(now_.linear, linear, window, request_);
   paste(now_.visibility, visibility, window, request_);
   paste(now_.judged, judged, window, request_);

@@ -35,7 +35,7 @@ Renderer::State::State(const RendererOptions& options)
       pipelines(device, shaders),
       recorder(device, pipelines),
       constants(device, ledger, constants_bytes),
-      faults(device, ledger, "fault counter", sizeof(FaultCounts),
+      faults(device, ledger, "fault counter", sizeof(std::uint32_t),
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vulkan::MemoryKind::readback),
       most_window_samples(options.most_window_samples) {
   shaders.add(embedded_renderer_shaders());

@@ -5,7 +5,8 @@
 namespace penumbra {
 
 GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger& ledger,
-                                    std::uint32_t width, std::uint32_t height, bool stencil) {
+                                    std::uint32_t width, std::uint32_t height, bool stencil,
+                                    bool emitted) {
   constexpr VkImageUsageFlags color =
       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   const auto image = [&](const char* name, VkFormat format, VkImageUsageFlags usage) {
@@ -25,7 +26,7 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
   buffer.depth = image(stencil ? "geometry depth and stencil" : "geometry depth",
                        stencil ? VK_FORMAT_D32_SFLOAT_S8_UINT : VK_FORMAT_D32_SFLOAT,
                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-  buffer.radiance = image("radiance", GeometryBuffer::radiance_format, color);
+  if (emitted) buffer.emitted = image("emitted light", GeometryBuffer::emitted_format, color);
   return buffer;
 }
 
@@ -35,9 +36,8 @@ vulkan::RenderTargets targets_of(const GeometryBuffer& buffer) {
   vulkan::RenderTargets targets;
   targets.width = buffer.width;
   targets.height = buffer.height;
-  targets.colors = {{buffer.position.slice(0), false, {}},
-                    {buffer.words.slice(0), false, {}},
-                    {buffer.radiance.slice(0), false, {}}};
+  for (const vulkan::Image* image : {&buffer.position, &buffer.words, &buffer.emitted})
+    if (*image) targets.colors.push_back({image->slice(0), false, {}});
   targets.depth = buffer.depth.slice(0);
   targets.depth_format = buffer.depth.description().format;
   targets.clear_depth = true;
@@ -45,22 +45,15 @@ vulkan::RenderTargets targets_of(const GeometryBuffer& buffer) {
   return targets;
 }
 
-vulkan::GraphicsState geometry_state(const vulkan::RenderTargets& targets) {
-  vulkan::GraphicsState state;
-  state.color_formats = {GeometryBuffer::position_format, GeometryBuffer::words_format,
-                         GeometryBuffer::radiance_format};
-  state.depth_format = targets.depth_format;
-  state.depth_test = true;
-  return state;
-}
-
 void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
-                   const GpuScene& scene, vulkan::GraphicsState state, vulkan::Bindings bindings,
-                   const glm::mat4& clip_from_world, const GammaTreatment& gamma) {
+                   const GpuScene& scene, const vulkan::GraphicsState& state,
+                   vulkan::Bindings bindings, const glm::mat4& clip_from_world,
+                   const GammaTreatment& gamma, const std::string& definitions) {
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/geometry_buffer.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/geometry_buffer.frag"}};
   source.preamble = "#define DECODES " + std::to_string(gamma.decodes) + "\n";
+  source.preamble += definitions;
   const auto program_of = [&](const DrawRange& range) {
     const bool textured = scene.scene().materials[range.material].texture >= 0;
     vulkan::ProgramSource program = source;
@@ -71,9 +64,6 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
     if (range.masked) program.preamble += "#define MASKED\n";
     return program;
   };
-  state.vertex_input = vulkan::VertexInput::surface;
-  state.depth_compare = VK_COMPARE_OP_GREATER;
-  state.depth_write = true;
   const VkBuffer buffers[] = {scene.position_buffer().handle(), scene.surface_buffer().handle()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands.handle(), 0, 2, buffers, offsets);
@@ -109,17 +99,18 @@ void draw_surfaces(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   }
 }
 
-/// Where no surface was drawn: together they cover everything, and no clear is needed.
-void draw_sky(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
-              vulkan::GraphicsState state, const vulkan::Bindings& bindings) {
-  vulkan::ProgramSource sky;
-  sky.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
+/// Where no surface was drawn: together they cover everything. On lavapipe clearing takes longer.
+void draw_background(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
+                     const std::string& definitions, vulkan::GraphicsState state) {
+  vulkan::ProgramSource source;
+  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
+                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/background.frag"}};
+  source.preamble = definitions;
   state.vertex_input = vulkan::VertexInput::none;
   state.depth_compare = VK_COMPARE_OP_EQUAL;
   state.depth_write = false;
   commands.cull(VK_CULL_MODE_NONE);
-  commands.bind(pipelines.graphics(sky, state), bindings);
+  commands.bind(pipelines.graphics(source, state), {});
   commands.full_screen_triangle();
 }
 
@@ -130,10 +121,18 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
                    const GammaTreatment& gamma) {
   const vulkan::RenderTargets targets = targets_of(buffer);
-  const vulkan::GraphicsState state = geometry_state(targets);
+  vulkan::GraphicsState state;
+  state.color_formats = {GeometryBuffer::position_format, GeometryBuffer::words_format};
+  if (buffer.emitted) state.color_formats.push_back(GeometryBuffer::emitted_format);
+  state.depth_format = targets.depth_format;
+  state.depth_test = state.depth_write = true;
+  state.depth_compare = VK_COMPARE_OP_GREATER;
+  state.vertex_input = vulkan::VertexInput::surface;
+  const std::string definitions = buffer.emitted ? "#define EMISSIVE\n" : "";
   commands.begin_rendering(targets);
-  draw_surfaces(commands, pipelines, scene, state, frame_bindings, clip_from_world, gamma);
-  draw_sky(commands, pipelines, state, frame_bindings);
+  draw_surfaces(commands, pipelines, scene, state, frame_bindings, clip_from_world, gamma,
+                definitions);
+  draw_background(commands, pipelines, definitions, state);
   commands.end_rendering();
 }
 

@@ -7,12 +7,13 @@
 
 namespace penumbra {
 
-/// Allocates the geometry buffer for this many samples; stencil only where asked for.
+/// Allocates the geometry buffer for this many samples; stencil and emitted light only where asked
+/// for.
 GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger& ledger,
-                                    std::uint32_t width, std::uint32_t height, bool stencil);
+                                    std::uint32_t width, std::uint32_t height, bool stencil,
+                                    bool emitted);
 
-/// Draws the scene into the geometry buffer, with ambient and emitted light and the sky as
-/// radiance. Colours are decoded from sRGB as `gamma` says.
+/// Draws the scene into the geometry buffer. Colours are decoded from sRGB as `gamma` says.
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,

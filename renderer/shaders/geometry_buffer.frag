@@ -14,7 +14,9 @@ layout(location = 4) in vec4 vertex_color;
 
 layout(location = 0) out vec4 out_position;
 layout(location = 1) out uvec4 out_words;
-layout(location = 2) out vec4 out_radiance;
+#ifdef EMISSIVE
+layout(location = 2) out vec4 out_emitted;
+#endif
 
 #ifdef TEXTURED
 uniform sampler2D surface_texture;
@@ -22,8 +24,8 @@ uniform sampler2D surface_texture;
 
 void main() {
   uvec4 words = facet_words;
-  MaterialData material = materials[draw.material];
 #ifdef COLOR_VARIES
+  MaterialData material = materials[draw.material];
   vec4 color = material.base_color * vertex_color;
 #ifdef TEXTURED
   vec4 texel = texture(surface_texture, surface_uv);
@@ -38,5 +40,7 @@ void main() {
   words.z = pack_color(decoded(color.rgb));
 #endif
   pack_surface(words, world_position, world_normal, !gl_FrontFacing, out_position, out_words);
-  out_radiance = vec4(frame.ambient.rgb * unpack_color(words.z) + material.emissive.rgb, 1.0);
+#ifdef EMISSIVE
+  out_emitted = vec4(materials[draw.material].emissive.rgb, 1.0);
+#endif
 }

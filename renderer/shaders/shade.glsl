@@ -1,16 +1,12 @@
-// Fragment stage that adds one light to the frame where there is a surface. The program is this file followed by the
+// Fragment stage that draws one light where there is a surface. The program is this file followed by the
 // technique's, which defines calculate_shadow. For lights of many points see shade_points.glsl.
 #include "renderer/shaders/shadow_query.glsl"
+#include "renderer/shaders/light_output.glsl"
 
 float calculate_shadow(ShadowQuery query);
 
 uniform sampler2D geometry_position;
 uniform usampler2D geometry_words;
-
-layout(location = 0) out vec4 out_radiance;
-#ifdef WITH_VISIBILITY
-layout(location = 1) out vec2 out_visibility;  // visibility times judged, judged
-#endif
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
@@ -25,8 +21,5 @@ void main() {
     visible = calculate_shadow(make_query(surface, incoming, gl_FragCoord.xy, 0));
     radiance = visible * reflect_light(light, incoming, surface);
   }
-  out_radiance = vec4(radiance, 0.0);
-#ifdef WITH_VISIBILITY
-  out_visibility = judged ? vec2(visible, 1.0) : vec2(0.0);
-#endif
+  write_light(surface, radiance, visible, judged);
 }

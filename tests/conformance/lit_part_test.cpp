@@ -8,6 +8,7 @@
 
 #include "renderer/render.h"
 #include "renderer/scene/transforms.h"
+#include "scenes/library.h"
 #include "techniques/registry.h"
 #include "tests/conformance/scenes.h"
 
@@ -28,6 +29,68 @@ TEST(LitPart, is_the_box_as_an_orthographic_camera_sees_it) {
   EXPECT_EQ(part.offset.x, 24);
   EXPECT_EQ(part.offset.y, 34);
   EXPECT_EQ(seen_part({}, glm::dvec3(0.0), camera.clip_from_world, 100, 100).extent.width, 0u);
+}
+
+TEST(LitPart, and_what_lies_outside_cover_every_sample_once) {
+  const std::uint32_t width = 7, height = 5;
+  const auto add = [](std::vector<int>& samples, const VkRect2D& part) {
+    for (std::uint32_t y = 0; y < part.extent.height; ++y)
+      for (std::uint32_t x = 0; x < part.extent.width; ++x)
+        ++samples.at((static_cast<std::uint32_t>(part.offset.y) + y) * 7 +
+                     static_cast<std::uint32_t>(part.offset.x) + x);
+  };
+  for (const VkRect2D& part :
+       {VkRect2D{{0, 0}, {7, 5}}, VkRect2D{{0, 0}, {0, 0}}, VkRect2D{{2, 1}, {3, 2}},
+        VkRect2D{{0, 2}, {7, 3}}, VkRect2D{{5, 0}, {2, 5}}, VkRect2D{{7, 5}, {0, 0}}}) {
+    std::vector<int> samples(35);
+    add(samples, part);
+    for (const VkRect2D& rest : outside(part, width, height)) add(samples, rest);
+    EXPECT_EQ(samples, std::vector<int>(35, 1)) << part.offset.x << ", " << part.offset.y;
+  }
+}
+
+/// Boxes that glow a little under a sky of two colours, half of them outside a lamp's cone.
+Scene glowing_boxes() {
+  Scene scene = *scenes::load("boxes");
+  scene.background_high = {0.2f, 0.3f, 0.9f};
+  scene.background_low = {0.9f, 0.8f, 0.7f};
+  scene.ambient = {0.03f, 0.05f, 0.07f};
+  scene.materials.front().emissive = {0.1f, 0.02f, 0.0f};
+  scene.lights.front().kind = LightKind::spot;
+  scene.lights.front().outer_angle = 6.0;
+  scene.lights.front().inner_angle = 5.0;
+  scene.cameras.front().target.y += 3.0;
+  return scene;
+}
+
+// One light writes finished pixels, and what it does not reach is drawn by others; several lights
+// are summed first. A second light that is as good as dark tells whether these come to the same.
+TEST(LitPart, is_finished_as_if_there_were_more_lights) {
+  Renderer renderer({.device = "", .validation = true});
+  for (const char* technique : {"none", "shadow-map", "shadow-volumes", "ray-traced", "reference"})
+    for (const bool glows : {true, false}) {
+      SCOPED_TRACE(std::string(technique) + (glows ? ", glows" : ""));
+      Scene one = glowing_boxes();
+      if (!glows) one.materials.front().emissive = {};
+      Scene two = one;
+      two.lights.push_back(two.lights.front());
+      two.lights.back().name = "dark";
+      two.lights.back().intensity = 1e-30f;
+      const auto draw = [&](const Scene& scene) {
+        RenderRequest request;
+        request.scene = std::make_shared<const Scene>(scene);
+        request.technique = techniques::resolve(technique).technique;
+        request.parameters = techniques::resolve(technique).parameters;
+        request.width = 160;
+        request.height = 120;
+        request.light_samples = 16;
+        request.linear = true;
+        return renderer.render(request);
+      };
+      const RenderResult finished = draw(one), summed = draw(two);
+      EXPECT_EQ(finished.picture.pixels, summed.picture.pixels);
+      EXPECT_EQ(finished.linear.pixels, summed.linear.pixels);
+    }
 }
 
 TEST(LitPart, holds_every_point_of_the_boxes_that_the_camera_sees) {

@@ -157,9 +157,9 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene)
 }
 
 std::uint32_t Tracer::unfinished() const {
-  std::uint32_t words[4];
-  std::memcpy(words, faults_.mapped(), sizeof(words));
-  return words[1];
+  std::uint32_t count = 0;
+  std::memcpy(&count, faults_.mapped(), sizeof(count));
+  return count;
 }
 
 GeometryBuffer Tracer::upload_receivers(std::span<const Receiver> receivers, std::uint32_t size) {
