@@ -11,6 +11,7 @@ DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const Cast
   const auto pipeline_for = [&](bool masked) -> const vulkan::Pipeline& {
     vulkan::ProgramSource source{program.stages, program.preamble};
     if (masked) source.preamble += "#define MASKED\n";
+    if (!masked && program.shades_holes_alone) source.stages.erase(VK_SHADER_STAGE_FRAGMENT_BIT);
     state.vertex_input = masked ? vulkan::VertexInput::surface : vulkan::VertexInput::position;
     return pipelines.graphics(source, state);
   };

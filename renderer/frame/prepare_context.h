@@ -18,8 +18,9 @@ struct CasterProgram {
   std::string preamble;
   vulkan::GraphicsState state;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< of single-sided materials; others are never culled
-  bool all_surfaces = false;                 ///< also those that cast no shadow
-  bool cull_by_spheres = false;              ///< around the boxes that are culled by otherwise
+  bool shades_holes_alone = false;  ///< materials without are drawn without a fragment stage
+  bool all_surfaces = false;        ///< also those that cast no shadow
+  bool cull_by_spheres = false;     ///< around the boxes that are culled by otherwise
 };
 
 /// What draw_casters drew.

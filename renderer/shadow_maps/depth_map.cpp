@@ -154,6 +154,21 @@ VkFormat depth_format(const ParameterValues& parameters) {
   return compact ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
 }
 
+/// Whether the rasteriser comes to the depths that are kept: affine in the map's plane, and moved
+/// by no more than rounding needs, whatever the facet.
+bool interpolates_depth(const TechniqueInput& input, const std::vector<shader::MapView>& views) {
+  const ParameterValues& parameters = input.parameters;
+  if (real_of(parameters, "bias") > 0.0 || chosen_strategy(parameters).moves_facets) return false;
+  const bool hyperbolic =
+      parameters.contains("depth") && choice_of(parameters, "depth") == "hyperbolic";
+  return std::all_of(views.begin(), views.end(), [&](const shader::MapView& view) {
+    const bool perspective = view.origin.w > 0.5f;
+    const bool counted_from_scene = view.right.w != 0.0f;
+    const bool warped = view.unwarp[0].z != 0.0f || view.unwarp[1].z != 0.0f;
+    return !warped && (!perspective || (hyperbolic && !counted_from_scene));
+  });
+}
+
 }  // namespace
 
 bool keeps_image(const ParameterValues& parameters) {
@@ -262,6 +277,10 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
   program.state.depth_test = program.state.depth_write = true;
   program.state.depth_compare = VK_COMPARE_OP_LESS;
   program.state.depth_clamp = std::none_of(views.begin(), views.end(), cuts_casters);
+  if (layer.empty() && program.state.depth_clamp && interpolates_depth(context.input, views)) {
+    program.preamble += "#define INTERPOLATED_DEPTH\n";
+    program.shades_holes_alone = true;
+  }
   if (chosen_strategy(context.input.parameters).surfaces == MapSurfaces::back_faces)
     program.cull = VK_CULL_MODE_FRONT_BIT;
 

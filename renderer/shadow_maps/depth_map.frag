@@ -1,4 +1,5 @@
-// Depth computed anew for every fragment: interpolated depth would be wrong inside triangles.
+// Depth computed anew for every fragment where interpolated depth would be wrong inside triangles; otherwise
+// (INTERPOLATED_DEPTH) for holes alone.
 #include "renderer/shaders/caster.glsl"
 #include "renderer/shadow_maps/bias/strategies.glsl"
 #include "renderer/shadow_maps/texels/depth_coding.glsl"
@@ -31,6 +32,7 @@ void main() {
   if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
   if (alpha < material.surface.z) discard;
 #endif
+#ifndef INTERPOLATED_DEPTH
   float distance = dot(world_position - view.origin.xyz, view.forward.xyz);
 #ifdef LAYER
   // One of two layers; layered_depths.frag makes a map of both.
@@ -62,6 +64,7 @@ void main() {
     atomicMax(map_texels[uint(view.texels.y) + place.y * side + place.x], floatBitsToUint(1.0 - kept));
 #else
   gl_FragDepth = kept;
+#endif
 #endif
 #endif
 }

@@ -1,4 +1,7 @@
 #include "renderer/shaders/caster.glsl"
+#ifdef INTERPOLATED_DEPTH
+#include "renderer/shadow_maps/texels/depth_coding.glsl"
+#endif
 
 #ifdef TILE
 layout(std140) uniform MapBlock { MapData map; };
@@ -34,5 +37,9 @@ void main() {
   for (int side = 0; side < 4; ++side) gl_ClipDistance[side] = view.choice.x > 0.0 ? inside[side] : -1.0;
 #else
   gl_Position = view.clip_from_world * vec4(position, 1.0);
+#ifdef INTERPOLATED_DEPTH
+  float distance = dot(position - view.origin.xyz, view.forward.xyz) + view.range.w;
+  gl_Position.z = clip_depth(view.range, distance, gl_Position.w, map.texel.w);
+#endif
 #endif
 }

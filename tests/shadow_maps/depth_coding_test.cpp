@@ -182,5 +182,48 @@ TEST(DepthCoding, a_range_that_ends_before_it_begins_is_refused) {
   }
 }
 
+/// Boxes of many sizes on a floor that is tilted, too.
+Scene crowd() {
+  Scene scene = tilted_floor(10.0);
+  for (int i = 0; i < 12; ++i) {
+    const double x = 0.14 * (i % 4) - 0.3, z = 0.2 * (i / 4) - 0.3, size = 0.02 + 0.007 * i;
+    add_box(scene, {x, 0.1, z}, {x + size, 0.1 + 3.0 * size, z + 0.5 * size});
+  }
+  return scene;
+}
+
+// Where the rasteriser comes to the depths that are kept, maps are drawn without a fragment stage.
+// The least bias asks for one: depths are then computed for each fragment.
+TEST(DepthCoding, interpolated_depths_cast_the_shadows_of_computed_ones) {
+  Scene under_lamp = crowd(), under_sun = crowd();
+  under_sun.lights = {sun()};
+  under_sun.lights[0].direction = glm::normalize(glm::vec3(0.3f, -1.0f, 0.2f));
+  struct Case {
+    const Scene& scene;
+    const char *depth, *bits, *layout;
+  };
+  for (const Case& c :
+       {Case{under_lamp, "hyperbolic", "32", "single"},
+        Case{under_lamp, "hyperbolic", "16", "single"}, Case{under_sun, "linear", "32", "single"},
+        Case{under_sun, "linear", "16", "single"},
+        Case{under_sun, "hyperbolic", "32", "cascaded"}}) {
+    SCOPED_TRACE(std::string(c.depth) + c.bits + c.layout);
+    ParameterValues parameters = coding(c.depth, c.bits, 0.0, 0.0);
+    parameters["layout"] = std::string(c.layout);
+    const auto seen = [&](double least_bias) {
+      parameters["bias"] = least_bias;
+      return draw(c.scene, "shadow-map", parameters, 256).visibility.pixels;
+    };
+    const std::vector<float> interpolated = seen(0.0), computed = seen(1e-12);
+    std::size_t differ = 0, shadowed = 0;
+    for (std::size_t i = 0; i < computed.size(); ++i) {
+      differ += interpolated[i] != computed[i];
+      shadowed += computed[i] == 0.0f;
+    }
+    EXPECT_GT(shadowed, 200u);
+    EXPECT_LE(differ, computed.size() / 5000);
+  }
+}
+
 }  // namespace depth_coding_test
 }  // namespace penumbra::tests

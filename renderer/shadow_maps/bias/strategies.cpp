@@ -9,11 +9,12 @@ namespace penumbra::shadow_maps {
 const std::vector<BiasStrategy>& bias_strategies() {
   static const std::vector<BiasStrategy> strategies = {
       {"constant", "depth is moved away from the light, for facets at 45 degrees"},
-      {"slope", "by what each caster's facet spans over the kernel"},
+      {"slope", "by what each caster's facet spans over the kernel", MapSurfaces::first, true},
       {"normal-offset", "the receiver is moved along its normal"},
       {"receiver-plane",
        "every texel is compared with the receiver's plane at the texel's own place"},
-      {"back-faces", "only faces turned away from the light are drawn", MapSurfaces::back_faces},
+      {"back-faces", "only faces turned away from the light are drawn", MapSurfaces::back_faces,
+       true},
       {"second-depth", "the second surface from the light is", MapSurfaces::first_and_second},
       {"midpoint", "the middle between the first two", MapSurfaces::first_and_second},
       {"dual-depth", "that, but never far behind the first", MapSurfaces::first_and_second},

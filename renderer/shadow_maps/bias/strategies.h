@@ -12,6 +12,7 @@ struct BiasStrategy {
   std::string id;       ///< value of parameter `bias_strategy`
   std::string meaning;  ///< a few words in that parameter's description
   MapSurfaces surfaces = MapSurfaces::first;
+  bool moves_facets = false;  ///< casters' facets are moved by their slopes
 };
 
 const std::vector<BiasStrategy>& bias_strategies();

@@ -73,18 +73,21 @@ float even_depth(vec4 range, float coded) { return coded; }
 float coding_slope(vec4 range, float distance) { return 1.0 / range.z; }
 #endif
 
-/// How far a kept depth may lie from the one that was meant, m: half a step of 16 bits, two units in
-/// the last place of a float below 1. Even depth in 32 bits loses less than positions do, which are
-/// floats too.
-float coding_error(vec4 range, float distance) {
+/// How far a kept depth may lie from the one that was meant, in what is kept: half a step of 16 bits, two
+/// units in the last place of a float below 1. Even depth in 32 bits loses less than positions do, which
+/// are floats too.
+float coded_rounding() {
 #if defined(variant_depth_bits_16)
-  return 0.5 / 65535.0 * coding_slope(range, distance);
+  return 0.5 / 65535.0;
 #elif defined(variant_depth_hyperbolic)
-  return exp2(-23.0) * coding_slope(range, distance);
+  return exp2(-23.0);
 #else
   return 0.0;
 #endif
 }
+
+/// The same as a distance, m.
+float coding_error(vec4 range, float distance) { return coded_rounding() * coding_slope(range, distance); }
 
 /// What is added to every depth that is kept, as glPolygonOffset does (Sindholt 2005, 2.2.8), in place
 /// of what its rounding needs. 0 for techniques that do more than compare depths.
@@ -104,5 +107,18 @@ float kept_depth(vec4 range, float depth) { return min(coded_depth(range, depth)
 /// What a strategy grants for the rounding of what is kept, m.
 float rounding_grant(vec4 range, float distance) {
   return granted_units() > 0.0 ? 0.0 : coding_error(range, distance);
+}
+
+/// Place on the depth axis of the clip volume, for views whose kept depths a projection interpolates: those of
+/// parallel rays, and hyperbolic ones. `distance` along the axis, m, with its bias; `w` of the clip volume.
+/// `slope_scale` of the rounding is granted as for each fragment elsewhere.
+float clip_depth(vec4 range, float distance, float w, float slope_scale) {
+  float depth = even_depth_of(range, distance) * w;
+#ifdef variant_depth_hyperbolic
+  // Even in 1/z. Behind the light, where nothing is drawn, no division by what may be 0.
+  if (is_divided()) depth *= range.y / (distance > 0.5 * range.x ? distance : w);
+#endif
+  float granted = granted_units() > 0.0 ? granted_units() : slope_scale * coded_rounding();
+  return depth + granted * w;
 }
 #endif
