@@ -45,8 +45,9 @@ class FrameRun {
                    const std::function<void(double)>& progress);
   /// Whether the one light there is, if any, writes finished pixels: they have one sample.
   bool light_finishes() const;
+  /// What lights are drawn into; the first that is drawn clears their sum.
   LightPass::Output light_output(bool first) const;
-  /// What encodes pixels beside a light's pass, without shader stages' definitions of its own.
+  /// The picture as it is stored, and in linear light where that is asked for.
   LightPass::Output picture_output() const;
   void resolve(const vulkan::Bindings& bindings);
   /// A program over some of the picture.

@@ -198,8 +198,6 @@ void GpuScene::add_range(const Part& part) {
   range.casts_shadow = uses_[part.instance].casts;
   range.double_sided = scene_->materials[primitive.material].double_sided;
   range.masked = part.holes;
-  range.colored = std::any_of(mesh.colors.begin(), mesh.colors.end(),
-                              [](const auto& color) { return glm::packUnorm4x8(color) != white; });
   range.low = glm::vec3(std::numeric_limits<float>::max());
   range.high = -range.low;
   const bool mirrored = glm::determinant(glm::dmat3(instance.world_from_object)) < 0.0;
@@ -209,6 +207,8 @@ void GpuScene::add_range(const Part& part) {
     const std::uint32_t index =
         first_vertex_[part.instance] + mesh.indices[primitive.first_index + turned];
     index_list_.push_back(index);
+    const auto* surfaces = reinterpret_cast<const SurfaceVertex*>(surface_list_.data());
+    range.colored = range.colored || surfaces[index].color != white;
     range.low = glm::min(range.low, position_list_[index]);
     range.high = glm::max(range.high, position_list_[index]);
   }

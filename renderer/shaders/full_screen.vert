@@ -1,5 +1,3 @@
-// One triangle that covers the target, at depth 0: infinity.
-void main() {
-  vec2 corner = vec2(gl_VertexIndex << 1 & 2, gl_VertexIndex & 2);
-  gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
-}
+#include "renderer/shaders/full_screen.glsl"
+
+void main() { gl_Position = full_screen_corner(); }
