@@ -40,10 +40,13 @@ Child::Child(const std::function<void(const Tell&)>& work) {
   if (::pipe2(ends, O_CLOEXEC) != 0)
     throw std::system_error(errno, std::generic_category(), "pipe");
   std::fflush(nullptr);
+  const pid_t parent = ::getpid();
   pid_ = ::fork();
   if (pid_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (pid_ == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // It may have died before it could send that signal.
+    if (::getppid() != parent) _exit(1);
     ::close(ends[0]);
     int state = 0;
     try {

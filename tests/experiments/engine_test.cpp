@@ -2,9 +2,13 @@
 #include "experiments/engine/engine.h"
 
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "experiments/engine/versions.h"
 #include "renderer/error.h"
@@ -57,15 +61,53 @@ TEST(Results, drop_a_last_line_that_a_kill_cut_off_and_keep_the_others) {
   EXPECT_EQ(lines_of(file), 2u);
 }
 
+/// Empty where another process may write the file now, otherwise the code of its error.
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    const Results results(file);
+    return {};
+  } catch (const Error& error) {
+    return error.code;
+  }
+}
+
+/// A process that has the results, and a child of it that only waits.
+struct Writer {
+  explicit Writer(const std::filesystem::path& file) {
+    int ends[2];
+    EXPECT_EQ(::pipe(ends), 0);
+    process = ::fork();
+    if (process == 0) {
+      const Results results(file);
+      const pid_t waiting = ::fork();
+      if (waiting != 0 && ::write(ends[1], &waiting, sizeof(waiting)) != sizeof(waiting)) _exit(1);
+      while (true) ::pause();
+    }
+    EXPECT_EQ(::read(ends[0], &child, sizeof(child)), static_cast<ssize_t>(sizeof(child)));
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
+  ~Writer() {
+    kill();
+    ::kill(child, SIGKILL);
+  }
+  void kill() {
+    if (process <= 0) return;
+    ::kill(process, SIGKILL);
+    ::waitpid(std::exchange(process, -1), nullptr, 0);
+  }
+
+  pid_t process = -1;
+  pid_t child = -1;
+};
+
 TEST(Results, of_one_folder_belong_to_one_writer_at_a_time) {
   const TemporaryFolder folder;
-  const Results first(folder.path() / "results.jsonl");
-  try {
-    const Results second(folder.path() / "results.jsonl");
-    FAIL() << "two writers";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code, "busy");
-  }
+  const auto file = folder.path() / "results.jsonl";
+  Writer writer(file);
+  EXPECT_EQ(refusal(file), "busy");
+  writer.kill();
+  EXPECT_EQ(refusal(file), "") << "a child that outlives a killed experiment holds its results";
 }
 
 TEST(Engine, measures_a_run_once_also_over_restarts) {
