@@ -9,6 +9,7 @@
 
 #include "renderer/error.h"
 #include "renderer/frame/split_triangles.h"
+#include "renderer/frame/triangle_order.h"
 #include "renderer/scene/coverage.h"
 #include "renderer/shaders/shader_types.h"
 
@@ -124,6 +125,7 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   constexpr VkBufferUsageFlags index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
   std::vector<glm::vec3> positions = position_list_;
   const std::vector<std::uint32_t> surface_indices = add_facets(positions);
+  meet_at_places();
   positions_ =
       upload(device, ledger_, "positions", positions.data(), positions.size() * 12, vertex);
   surfaces_ = upload(device, ledger_, "surface attributes", surface_list_.data(),
@@ -132,6 +134,8 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   surface_indices_ = upload(device, ledger_, "surface indices", surface_indices.data(),
                             surface_indices.size() * 4, index);
   surface_list_ = {};
+  orders_.clear();
+  first_at_ = {};
   upload_materials(device);
 }
 
@@ -165,6 +169,8 @@ void GpuScene::add_vertices() {
     if (!used(i)) continue;
     const Instance& instance = scene_->instances[i];
     const Mesh& mesh = scene_->meshes[instance.mesh];
+    for (const std::uint32_t vertex : order_of(instance.mesh).first_at)
+      first_at_.push_back(first_vertex_[i] + vertex);
     const glm::dmat4 placed = world_from_object(static_cast<std::uint32_t>(i));
     const glm::dmat3 normal_matrix = glm::inverse(glm::transpose(glm::dmat3(placed)));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -186,9 +192,15 @@ glm::dmat4 GpuScene::world_from_object(std::uint32_t instance) const {
   return placed;
 }
 
+const TriangleOrder& GpuScene::order_of(std::uint32_t mesh) {
+  const auto [order, is_new] = orders_.try_emplace(mesh);
+  if (is_new) order->second = triangle_order(scene_->meshes[mesh]);
+  return order->second;
+}
+
 void GpuScene::add_range(const Part& part) {
   const Instance& instance = scene_->instances[part.instance];
-  const Mesh& mesh = scene_->meshes[instance.mesh];
+  const std::vector<std::uint32_t>& corners = order_of(instance.mesh).corners;
   const Primitive& primitive = *part.primitive;
   DrawRange range;
   range.first_index = static_cast<std::uint32_t>(index_list_.size());
@@ -205,7 +217,7 @@ void GpuScene::add_range(const Part& part) {
     const std::uint32_t corner = i % 3;
     const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
     const std::uint32_t index =
-        first_vertex_[part.instance] + mesh.indices[primitive.first_index + turned];
+        first_vertex_[part.instance] + corners[primitive.first_index + turned];
     index_list_.push_back(index);
     const auto* surfaces = reinterpret_cast<const SurfaceVertex*>(surface_list_.data());
     range.colored = range.colored || surfaces[index].color != white;
@@ -240,6 +252,7 @@ void GpuScene::split_long_triangles(std::uint32_t first_index, std::uint32_t ins
     for (const auto& part : splitter.split({whole[i], whole[i + 1], whole[i + 2]}))
       index_list_.insert(index_list_.end(), part.begin(), part.end());
   for (const FineVertex& vertex : splitter.new_vertices()) {
+    first_at_.push_back(static_cast<std::uint32_t>(position_list_.size()));
     position_list_.push_back(glm::vec3(vertex.position));
     surface_list_.resize(position_list_.size() * sizeof(SurfaceVertex));
     const float length = glm::length(vertex.normal);
@@ -283,6 +296,15 @@ std::vector<std::uint32_t> GpuScene::add_facets(std::vector<glm::vec3>& position
     }
   }
   return indices;
+}
+
+void GpuScene::meet_at_places() {
+  for (const DrawRange& range : ranges_) {
+    // Holes are looked up by what corners have of their own.
+    if (range.masked) continue;
+    for (std::uint32_t i = range.first_index; i < range.first_index + range.index_count; ++i)
+      index_list_[i] = first_at_[index_list_[i]];
+  }
 }
 
 bool GpuScene::emits() const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/frame/adjacency.h"
+#include "renderer/frame/triangle_order.h"
 #include "renderer/plan/plan.h"
 #include "renderer/scene/scene.h"
 #include "renderer/vulkan/commands.h"
@@ -84,13 +85,15 @@ class GpuScene {
   std::uint32_t first_vertex(std::uint32_t instance) const { return first_vertex_[instance]; }
 
   const std::vector<glm::vec3>& positions() const { return position_list_; }
+  /// Corners that lie at one place of an instance are one, but where there are holes.
   const std::vector<std::uint32_t>& indices() const { return index_list_; }
   const std::vector<DrawRange>& ranges() const { return ranges_; }
 
   const vulkan::Buffer& position_buffer() const { return positions_; }
   const vulkan::Buffer& surface_buffer() const { return surfaces_; }
   const vulkan::Buffer& index_buffer() const { return indices_; }
-  /// The same triangles for drawing surfaces: the first corner of each tells its facet.
+  /// The same triangles for drawing surfaces: corners have attributes of their own, and the first
+  /// tells the facet.
   const vulkan::Buffer& surface_index_buffer() const { return surface_indices_; }
   const vulkan::Buffer& material_buffer() const { return materials_; }
   /// White where the material has no texture.
@@ -128,6 +131,7 @@ class GpuScene {
   };
   std::vector<Part> find_parts() const;  ///< by material
   void add_vertices();
+  const TriangleOrder& order_of(std::uint32_t mesh);
   void add_range(const Part& part);
   /// Parts of triangles that pass the origin closer than their corners' floats bear, in place of
   /// them, from an index on.
@@ -140,6 +144,7 @@ class GpuScene {
   /// several triangles it is repeated at the end of `positions` and of the surfaces; returns the
   /// indices of all triangles with these.
   std::vector<std::uint32_t> add_facets(std::vector<glm::vec3>& positions);
+  void meet_at_places();
   void upload_materials(vulkan::Device& device);
   void find_coarse_coordinates();
 
@@ -154,7 +159,10 @@ class GpuScene {
   std::vector<glm::vec3> position_list_;
   std::vector<std::uint32_t> index_list_;
   std::vector<DrawRange> ranges_;
-  std::vector<std::byte> surface_list_;  ///< freed after upload
+  // Freed after upload.
+  std::vector<std::byte> surface_list_;
+  std::map<std::uint32_t, TriangleOrder> orders_;  ///< by mesh
+  std::vector<std::uint32_t> first_at_;            ///< by vertex, the instance's first at its place
   vulkan::MemoryLedger ledger_;
   vulkan::Buffer positions_, surfaces_, indices_, surface_indices_, materials_;
   std::vector<vulkan::Image> textures_;  ///< one per scene texture, empty where unused, then white

@@ -33,16 +33,11 @@ View view_of(const CameraMatrices& camera) {
   return view;
 }
 
-/// At most: a vertex that begins several triangles is repeated unless these lie in one plane. There
-/// are two lists of indices, with and without repeated vertices.
+/// At most: a triangle may repeat one vertex (GpuScene::add_facets). There are two lists of
+/// indices, of surfaces and of casters.
 std::uint64_t geometry_bytes(const Mesh& mesh) {
-  std::vector<bool> begins(mesh.positions.size());
-  std::uint64_t vertices = mesh.positions.size();
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    if (begins[mesh.indices[i]]) ++vertices;
-    begins[mesh.indices[i]] = true;
-  }
-  return vertices * vertex_bytes + 2 * mesh.indices.size() * sizeof(std::uint32_t);
+  return (mesh.positions.size() + mesh.indices.size() / 3) * vertex_bytes +
+         2 * mesh.indices.size() * sizeof(std::uint32_t);
 }
 
 std::uint64_t texture_bytes(const Texture& texture) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra {
+
+struct Mesh;
+
+/// A mesh's triangles as they are drawn.
+struct TriangleOrder {
+  /// As Mesh::indices, each primitive's triangles in its range, turned as they were. Vertices that
+  /// are alike in all that the mesh has of them are one. Where the given order asks for many
+  /// corners anew, triangles follow their neighbours: lavapipe runs the vertex stage again for what
+  /// its cache of 256 lost, and for each 341 triangles.
+  std::vector<std::uint32_t> corners;
+  /// By vertex: the first corner with the same position, which is all that shadows ask of it.
+  std::vector<std::uint32_t> first_at;
+};
+
+TriangleOrder triangle_order(const Mesh& mesh);
+
+}  // namespace penumbra
