@@ -64,8 +64,9 @@ struct Requirements {
   std::vector<MemoryNeed>
       memory;  ///< what may be too large for a device; not images of the frame's size
   CasterUse casters = CasterUse::cone;
-  bool stencil = false;                 ///< a stencil plane beside the geometry buffer's depth
-  bool adjacency = false;               ///< index buffer of triangles with adjacency
+  bool reads_sky = true;   ///< its own passes read the geometry buffer, also where no surface is
+  bool stencil = false;    ///< a stencil plane beside the geometry buffer's depth
+  bool adjacency = false;  ///< index buffer of triangles with adjacency
   bool acceleration_structure = false;  ///< bounding volume hierarchy over the casters
   std::uint32_t light_points = 1;  ///< points on the extent asked for one by one; 1: its centre
   bool shade_each_point = false;   ///< light from each point, not from the centre

@@ -5,7 +5,6 @@
 #include "renderer/error.h"
 #include "renderer/frame/common_parameters.h"
 #include "renderer/frame/host_copy.h"
-#include "renderer/frame/lit_part.h"
 #include "renderer/frame/parameter_glsl.h"
 #include "renderer/frame/scene_pass.h"
 #include "renderer/plan/memory_check.h"
@@ -60,12 +59,6 @@ template <class Needs>
 bool any(const std::vector<std::unique_ptr<LightPass>>& lights, const Needs& needs) {
   return std::any_of(lights.begin(), lights.end(),
                      [&](const auto& light) { return light && needs(light->needs()); });
-}
-
-vulkan::ProgramSource resolve_program(const std::string& definition) {
-  return {{{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-           {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve.frag"}},
-          definition};
 }
 
 bool has_many_points(const Requirements& needs) {
@@ -187,7 +180,8 @@ void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
   state_.recorder.begin(count_statistics);
   state_.recorder.pass("geometry", [&](vulkan::Commands& commands) {
     draw_geometry(commands, state_.pipelines, setup_.scene, targets_.geometry, bindings,
-                  glm::mat4(setup_.matrices.clip_from_world), gamma_treatment(setup_.parameters));
+                  glm::mat4(setup_.matrices.clip_from_world), gamma_treatment(setup_.parameters),
+                  reads_sky());
   });
   draw_lights(bindings, index, progress);
   resolve(bindings);
@@ -197,6 +191,13 @@ void FrameRun::draw(const Window& window, PointRange round, std::uint32_t index,
   if (unfinished > 0)
     throw device_error("loops of " + std::to_string(unfinished) +
                        " shader invocations ended before their work was done");
+}
+
+/// What shades and finishes lies behind the depth test.
+bool FrameRun::reads_sky() const {
+  if (!light_finishes() || request_.visibility || !request_.diagnostic.empty()) return true;
+  return any(lights_, [](const Requirements& needs) { return needs.reads_sky; }) ||
+         any(lights_, has_many_points);
 }
 
 void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index,
@@ -226,141 +227,12 @@ void FrameRun::draw_lights(const vulkan::Bindings& bindings, std::uint32_t index
   }
 }
 
-void FrameRun::encode(const ImageF& linear) {
-  write_float(state_.device, targets_.linear, linear);
-  state_.constants.reset();
-  std::memset(state_.faults.mapped(), 0, state_.faults.size());
-  vulkan::Bindings bindings = frame_bindings();
-  state_.recorder.begin(false);
-  LightPass::Output output;
-  output.formats = {FrameTargets::picture_format};
-  output.colors = {{targets_.picture.slice(0), false, {}}};
-  bindings.texture("linear_picture", targets_.linear, Sampling::nearest);
-  draw_resolve(bindings, output,
-               {{resolve_program("#define FROM_LINEAR\n"), whole(), VK_COMPARE_OP_ALWAYS}});
-  state_.recorder.end();
-}
-
 std::vector<std::string> FrameRun::notes() const {
   std::vector<std::string> notes = notes_;
   notes.insert(notes.end(), setup_.scene.notes().begin(), setup_.scene.notes().end());
   std::sort(notes.begin(), notes.end());
   notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
   return notes;
-}
-
-bool FrameRun::light_finishes() const {
-  return setup_.side == 1 && std::count(plan_.lights.begin(), plan_.lights.end(), true) <= 1;
-}
-
-LightPass::Output FrameRun::light_output(bool first) const {
-  LightPass::Output output;
-  if (light_finishes()) {
-    output = picture_output();
-    output.definitions += "#define FINISHES\n";
-  } else {
-    output.formats = {FrameTargets::radiance_format};
-    output.colors = {{targets_.radiance.slice(0), first, {}}};
-    output.blend = vulkan::Blend::add;
-  }
-  if (request_.visibility) {
-    output.definitions += "#define WITH_VISIBILITY\n#define VISIBILITY_LOCATION " +
-                          std::to_string(output.formats.size()) + "\n";
-    output.formats.push_back(FrameTargets::visibility_format);
-    output.colors.push_back({targets_.visibility_samples.slice(0), true, {}});
-  }
-  return output;
-}
-
-LightPass::Output FrameRun::picture_output() const {
-  LightPass::Output output;
-  output.formats = {FrameTargets::picture_format};
-  output.colors = {{targets_.picture.slice(0), false, {}}};
-  if (targets_.geometry.emitted) output.definitions = "#define EMISSIVE\n";
-  if (targets_.linear) {
-    output.definitions += "#define WITH_LINEAR\n";
-    output.formats.push_back(FrameTargets::linear_format);
-    output.colors.push_back({targets_.linear.slice(0), false, {}});
-  }
-  return output;
-}
-
-std::vector<FrameRun::Resolve> FrameRun::unfinished_parts() const {
-  const Scene& scene = *request_.scene;
-  const auto constant = [](const std::string& definition) {
-    return vulkan::ProgramSource{
-        {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/constant_color.vert"},
-         {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/constant_color.frag"}},
-        definition};
-  };
-  const std::string sky = "#define SKY\n";
-  std::vector<Resolve> parts{
-      {scene.background_low == scene.background_high ? constant(sky) : resolve_program(sky),
-       whole(), VK_COMPARE_OP_EQUAL}};
-  const bool dark = scene.ambient == glm::vec3(0.0f) && !targets_.geometry.emitted;
-  const std::size_t light = first_light();
-  const VkRect2D lit = light < lights_.size() ? lights_[light]->lit_part() : VkRect2D{};
-  for (const VkRect2D& rest : outside(lit, setup_.window.width, setup_.window.height))
-    parts.push_back(
-        {dark ? constant({}) : resolve_program("#define UNLIT\n"), rest, VK_COMPARE_OP_LESS});
-  return parts;
-}
-
-void FrameRun::resolve(const vulkan::Bindings& bindings) {
-  if (light_finishes()) {
-    draw_resolve(bindings, picture_output(), unfinished_parts());
-    return;
-  }
-  vulkan::Bindings all = bindings;
-  all.texture("radiance", targets_.radiance, Sampling::nearest);
-  draw_resolve(all, picture_output(),
-               {{resolve_program(setup_.side == 1 ? "#define ONE_SAMPLE\n" : ""), whole(),
-                 VK_COMPARE_OP_ALWAYS}});
-}
-
-void FrameRun::draw_resolve(const vulkan::Bindings& bindings, const LightPass::Output& output,
-                            std::vector<Resolve> parts) {
-  vulkan::RenderTargets targets;
-  targets.width = setup_.window.width;
-  targets.height = setup_.window.height;
-  targets.colors = output.colors;
-  vulkan::GraphicsState state;
-  state.color_formats = output.formats;
-  if (parts.front().depth != VK_COMPARE_OP_ALWAYS) {
-    targets.depth = targets_.geometry.depth.slice(0);
-    state.depth_format = targets.depth_format = targets_.geometry.depth.description().format;
-    targets.depth_read_only = state.depth_test = true;
-  }
-  state_.recorder.pass("resolve", [&](vulkan::Commands& commands) {
-    commands.begin_rendering(targets);
-    for (Resolve& part : parts) {
-      part.program.preamble += output.definitions;
-      state.depth_compare = part.depth;
-      commands.bind(state_.pipelines.graphics(part.program, state), bindings);
-      vkCmdSetScissor(commands.handle(), 0, 1, &part.area);
-      commands.full_screen_triangle();
-    }
-    commands.end_rendering();
-  });
-}
-
-void FrameRun::resolve_visibility(const vulkan::Bindings& bindings, std::uint32_t light) {
-  vulkan::ProgramSource source;
-  source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-                   {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shaders/resolve_visibility.frag"}};
-  vulkan::GraphicsState state;
-  state.color_formats = {FrameTargets::visibility_format};
-  vulkan::Bindings all = bindings;
-  all.texture("visibility_samples", targets_.visibility_samples, Sampling::nearest);
-  const vulkan::Pipeline& pipeline = state_.pipelines.graphics(source, state);
-  state_.recorder.pass("resolve visibility", [&](vulkan::Commands& commands) {
-    commands.begin_rendering({setup_.window.width,
-                              setup_.window.height,
-                              {{targets_.visibility.slice(light), false, {}}}});
-    commands.bind(pipeline, all);
-    commands.full_screen_triangle();
-    commands.end_rendering();
-  });
 }
 
 std::vector<ResourceCost> FrameRun::technique_memory() const {

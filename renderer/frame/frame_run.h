@@ -47,8 +47,11 @@ class FrameRun {
   bool light_finishes() const;
   /// What lights are drawn into; the first that is drawn clears their sum.
   LightPass::Output light_output(bool first) const;
+  /// Whether anything reads the geometry buffer where no surface is.
+  bool reads_sky() const;
   /// The picture as it is stored, and in linear light where that is asked for.
   LightPass::Output picture_output() const;
+  LightPass::Output begun_picture() const;  ///< with a sky that is the same everywhere
   void resolve(const vulkan::Bindings& bindings);
   /// A program over some of the picture.
   struct Resolve {

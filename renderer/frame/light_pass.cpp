@@ -158,14 +158,18 @@ vulkan::Bindings LightPass::shading_bindings(const Frame& frame,
 }
 
 void LightPass::shade(const Frame& frame, const vulkan::Bindings& bindings) {
-  draw_light(frame, program_path(frame.shaders, "renderer/shaders/shade.glsl"),
+  vulkan::Bindings named;
+  technique_->bind(named);
+  std::string passed = "#define PASSES_LIGHT\n";
+  if (named.entries().contains("MapBlock")) passed += "#define PASSES_MAP\n";
+  draw_light(frame, program_path(frame.shaders, "renderer/shaders/shade.glsl"), passed,
              [&](const vulkan::Pipeline& pipeline) {
                return shading_bindings(frame, bindings, pipeline);
              });
 }
 
 void LightPass::add_sum(const Frame& frame, const vulkan::Bindings& bindings) {
-  draw_light(frame, "renderer/shaders/add_light.frag", [&](const vulkan::Pipeline&) {
+  draw_light(frame, "renderer/shaders/add_light.frag", "", [&](const vulkan::Pipeline&) {
     vulkan::Bindings all = bindings;
     all.texture("geometry_position", frame.geometry.position, vulkan::Sampling::nearest);
     all.texture("geometry_words", frame.geometry.words, vulkan::Sampling::nearest);
@@ -176,12 +180,13 @@ void LightPass::add_sum(const Frame& frame, const vulkan::Bindings& bindings) {
 
 /// Draws a program over the surfaces that this light may reach.
 void LightPass::draw_light(
-    const Frame& frame, const std::string& fragment_stage,
+    const Frame& frame, const std::string& fragment_stage, const std::string& definitions,
     const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of) {
   vulkan::ProgramSource source;
   source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                    {VK_SHADER_STAGE_FRAGMENT_BIT, fragment_stage}};
-  source.preamble = declarations_ + frame.output.definitions;
+  source.preamble = declarations_ + frame.output.definitions + definitions;
+  source.constants_from_vertex = frame.device.reads_blocks_by_lane();
   if (needs_.shade_each_point) source.preamble += "#define SHADE_EACH_POINT\n";
   vulkan::GraphicsState state;
   state.color_formats = frame.output.formats;

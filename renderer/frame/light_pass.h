@@ -85,6 +85,7 @@ class LightPass {
   void add_sum(const Frame& frame, const vulkan::Bindings& bindings);
   void shade(const Frame& frame, const vulkan::Bindings& bindings);
   void draw_light(const Frame& frame, const std::string& fragment_stage,
+                  const std::string& definitions,
                   const std::function<vulkan::Bindings(const vulkan::Pipeline&)>& bindings_of);
   vulkan::Bindings shading_bindings(const Frame& frame, const vulkan::Bindings& light_bindings,
                                     const vulkan::Pipeline& pipeline) const;

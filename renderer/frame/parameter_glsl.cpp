@@ -21,12 +21,59 @@ std::int64_t integer_value(const Parameter& parameter, const ParameterValues& va
          choices.begin();
 }
 
+/// Of ParameterBlock.
+struct Member {
+  std::string name;
+  bool real;
+};
+
+std::string declaration(const Member& member) {
+  return (member.real ? "float " : "int ") + member.name + ";\n";
+}
+
+/// Flat words that a vertex stage passes, after those of frame, light and map: see
+/// full_screen.vert.
+constexpr std::size_t first_location = 27;
+constexpr std::size_t most_words = 16;
+
+std::size_t passed_words(const std::vector<Member>& block) {
+  return std::min(block.size(), most_words);
+}
+
+std::string words(const char* direction, const std::vector<Member>& block) {
+  return "layout(location = " + std::to_string(first_location) + ") flat " + direction +
+         " uvec4 parameter_words[" + std::to_string((passed_words(block) + 3) / 4) + "];\n";
+}
+
+std::string word(std::size_t i) {
+  return "parameter_words[" + std::to_string(i / 4) + "][" + std::to_string(i % 4) + "]";
+}
+
+std::string inputs(const std::vector<Member>& block) {
+  std::string text = words("in", block);
+  for (std::size_t i = 0; i < passed_words(block); ++i) {
+    const Member& member = block[i];
+    text += std::string(member.real ? "float" : "int") + " passed_" + member.name + " = " +
+            (member.real ? "uintBitsToFloat(" : "int(") + word(i) + ");\n#define " + member.name +
+            " passed_" + member.name + "\n";
+  }
+  return text;
+}
+
+std::string passing(const std::vector<Member>& block) {
+  std::string text = words("out", block) + "#define PASS_PARAMETERS";
+  for (std::size_t i = 0; i < passed_words(block); ++i)
+    text += " " + word(i) + " = " + (block[i].real ? "floatBitsToUint(" : "uint(") + block[i].name +
+            ");";
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string parameter_declarations(const std::vector<Parameter>& declared,
                                    const ParameterValues& values) {
   std::ostringstream constants;
-  std::ostringstream members;
+  std::vector<Member> block;
   for (const Parameter& parameter : declared) {
     const bool real = parameter.type == ParameterType::real;
     const std::string name = "parameter_" + identifier(parameter.name);
@@ -37,7 +84,7 @@ std::string parameter_declarations(const std::vector<Parameter>& declared,
       constants << "const int " << name
                 << "_maximum = " << static_cast<std::int64_t>(parameter.maximum) << ";\n";
     if (!parameter.variant) {
-      members << "  " << (real ? "float " : "int ") << name << ";\n";
+      block.push_back({name, real});
     } else if (real) {
       constants << "const float " << name << " = float(" << std::setprecision(9)
                 << real_of(values, parameter.name) << ");\n";
@@ -49,8 +96,11 @@ std::string parameter_declarations(const std::vector<Parameter>& declared,
     }
   }
   std::string text = constants.str();
-  if (!members.str().empty())
-    text += "layout(std430) readonly buffer ParameterBlock {\n" + members.str() + "};\n";
+  if (block.empty()) return text;
+  text += "layout(std430) readonly buffer ParameterBlock {\n";
+  for (const Member& member : block) text += declaration(member);
+  text += "};\n#ifdef CONSTANTS_FROM_VERTEX\n#ifdef FRAGMENT_STAGE\n" + inputs(block);
+  text += "#else\n" + passing(block) + "#endif\n#endif\n";
   return text;
 }
 

@@ -119,7 +119,7 @@ void draw_background(vulkan::Commands& commands, vulkan::PipelineCache& pipeline
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
-                   const GammaTreatment& gamma) {
+                   const GammaTreatment& gamma, bool marks_sky) {
   const vulkan::RenderTargets targets = targets_of(buffer);
   vulkan::GraphicsState state;
   state.color_formats = {GeometryBuffer::position_format, GeometryBuffer::words_format};
@@ -132,7 +132,7 @@ void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
   commands.begin_rendering(targets);
   draw_surfaces(commands, pipelines, scene, state, frame_bindings, clip_from_world, gamma,
                 definitions);
-  draw_background(commands, pipelines, definitions, state);
+  if (marks_sky) draw_background(commands, pipelines, definitions, state);
   commands.end_rendering();
 }
 

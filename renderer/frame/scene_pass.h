@@ -13,10 +13,11 @@ GeometryBuffer make_geometry_buffer(vulkan::Device& device, vulkan::MemoryLedger
                                     std::uint32_t width, std::uint32_t height, bool stencil,
                                     bool emitted);
 
-/// Draws the scene into the geometry buffer. Colours are decoded from sRGB as `gamma` says.
+/// Draws the scene into the geometry buffer. Colours are decoded from sRGB as `gamma` says. Where
+/// no surface is, the buffer holds zeros if it `marks_sky`, otherwise anything.
 void draw_geometry(vulkan::Commands& commands, vulkan::PipelineCache& pipelines,
                    const GpuScene& scene, const GeometryBuffer& buffer,
                    const vulkan::Bindings& frame_bindings, const glm::mat4& clip_from_world,
-                   const GammaTreatment& gamma);
+                   const GammaTreatment& gamma, bool marks_sky);
 
 }  // namespace penumbra

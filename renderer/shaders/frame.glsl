@@ -4,6 +4,17 @@
 #include "renderer/shaders/shader_types.h"
 
 layout(std140) uniform FrameBlock { FrameData frame; };
+#if defined(CONSTANTS_FROM_VERTEX) && defined(FRAGMENT_STAGE)
+layout(location = 0) flat in vec4 frame_camera_position;
+layout(location = 1) flat in vec4 frame_camera_direction;
+layout(location = 2) flat in vec4 frame_ambient;
+layout(location = 3) flat in vec4 frame_size;
+layout(location = 4) flat in uvec4 frame_options;
+FrameData passed_frame =
+    FrameData(frame.clip_from_world, frame.world_from_clip, frame_camera_position, frame_camera_direction,
+              frame_ambient, frame.background_low, frame.background_high, frame_size, frame.window, frame_options);
+#define frame passed_frame
+#endif
 
 // A power of two near one over the scene's size, 1/m: products of lengths that are scaled by it neither
 // overflow nor vanish, and lose no bit.

@@ -1,3 +1,65 @@
 #include "renderer/shaders/full_screen.glsl"
 
-void main() { gl_Position = full_screen_corner(); }
+// Alone, since the others would count among the components that a stage may write.
+out gl_PerVertex { vec4 gl_Position; };
+
+// Passes what fragments would read from blocks, at the locations that these are declared at: 0 to 4 the frame,
+// 5 to 11 the light, 12 to 26 the one view of a map, 27 to 30 parameters. With gl_Position these are the 32 that all
+// devices have.
+#ifdef CONSTANTS_FROM_VERTEX
+#include "renderer/shaders/frame.glsl"
+
+layout(location = 0) flat out vec4 frame_camera_position;
+layout(location = 1) flat out vec4 frame_camera_direction;
+layout(location = 2) flat out vec4 frame_ambient;
+layout(location = 3) flat out vec4 frame_size;
+layout(location = 4) flat out uvec4 frame_options;
+
+void pass_frame() {
+  frame_camera_position = frame.camera_position;
+  frame_camera_direction = frame.camera_direction;
+  frame_ambient = frame.ambient;
+  frame_size = frame.size;
+  frame_options = frame.options;
+}
+
+#ifdef PASSES_LIGHT
+#include "renderer/shaders/light.glsl"
+
+layout(location = 5) flat out LightData passed_light;
+
+void pass_light() { passed_light = light; }
+#else
+void pass_light() {}
+#endif
+
+#if defined(PASSES_MAP) && defined(ONE_VIEW)
+#include "renderer/shaders/map.glsl"
+
+layout(location = 12) flat out vec4 map_texel;
+layout(location = 13) flat out MapView only_view;
+
+void pass_map() {
+  map_texel = map.texel;
+  only_view = map.views[0];
+}
+#else
+void pass_map() {}
+#endif
+
+void pass_constants() {
+  pass_frame();
+  pass_light();
+  pass_map();
+#ifdef PASS_PARAMETERS
+  PASS_PARAMETERS
+#endif
+}
+#else
+void pass_constants() {}
+#endif
+
+void main() {
+  pass_constants();
+  gl_Position = full_screen_corner();
+}

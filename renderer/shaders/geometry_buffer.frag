@@ -10,6 +10,13 @@ layout(location = 2) flat in uvec4 facet_words;
 #ifdef COLOR_VARIES
 layout(location = 3) in vec2 surface_uv;
 layout(location = 4) in vec4 vertex_color;
+layout(location = 5) flat in vec4 material_color;
+#ifdef MASKED
+layout(location = 6) flat in float alpha_cutoff;
+#endif
+#endif
+#ifdef EMISSIVE
+layout(location = 7) flat in vec3 emitted;
 #endif
 
 layout(location = 0) out vec4 out_position;
@@ -25,8 +32,7 @@ uniform sampler2D surface_texture;
 void main() {
   uvec4 words = facet_words;
 #ifdef COLOR_VARIES
-  MaterialData material = materials[draw.material];
-  vec4 color = material.base_color * vertex_color;
+  vec4 color = material_color * vertex_color;
 #ifdef TEXTURED
   vec4 texel = texture(surface_texture, surface_uv);
 #ifdef TEXTURES_AS_STORED
@@ -35,12 +41,12 @@ void main() {
   color *= texel;
 #endif
 #ifdef MASKED
-  if (color.a < material.surface.z) discard;
+  if (color.a < alpha_cutoff) discard;
 #endif
   words.z = pack_color(decoded(color.rgb));
 #endif
   pack_surface(words, world_position, world_normal, !gl_FrontFacing, out_position, out_words);
 #ifdef EMISSIVE
-  out_emitted = vec4(materials[draw.material].emissive.rgb, 1.0);
+  out_emitted = vec4(emitted, 1.0);
 #endif
 }

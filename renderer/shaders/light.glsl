@@ -4,7 +4,11 @@
 #define PENUMBRA_LIGHT_GLSL
 #include "renderer/shaders/shader_types.h"
 
+#if defined(CONSTANTS_FROM_VERTEX) && defined(PASSES_LIGHT) && defined(FRAGMENT_STAGE)
+layout(location = 5) flat in LightData light;
+#else
 layout(std140) uniform LightBlock { LightData light; };
+#endif
 
 int light_kind() { return int(light.position.w); }
 int extent_kind() { return int(light.extent.x); }

@@ -1,5 +1,5 @@
 // Averages the samples of a pixel in linear light and encodes once. Or encodes what was averaged before
-// (FROM_LINEAR), the sky (SKY) or surfaces that no light reaches (UNLIT).
+// (FROM_LINEAR), the sky (SKY), surfaces that no light reaches (UNLIT), or those in the dark (BLACK).
 #include "renderer/shaders/pixel_output.glsl"
 #include "renderer/shaders/geometry_buffer.glsl"
 #include "renderer/shaders/unlit.glsl"
@@ -10,6 +10,8 @@ uniform sampler2D linear_picture;
 void main() { write_pixel(texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb, 1.0); }
 #elif defined(SKY)
 void main() { write_pixel(sky(ivec2(gl_FragCoord.xy)), frame.size.w); }
+#elif defined(BLACK)
+void main() { write_pixel(vec3(0.0), 1.0); }
 #else
 uniform sampler2D geometry_position;
 uniform usampler2D geometry_words;

@@ -190,6 +190,7 @@ void DepthMap::require(const TechniqueInput& input, Requirements& needs) {
   const Layout& layout = chosen_layout(input.parameters);
   require_served(layout, input.light);
   needs.definitions += view_definitions(input);
+  needs.reads_sky = false;
   if (layout.ranking != TileRanking::none) {
     if (knows_two_surfaces(input.parameters))
       throw unsupported("layout " + layout.id + " keeps one surface; bias_strategy " +

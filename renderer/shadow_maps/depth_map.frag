@@ -12,31 +12,25 @@ MapView view = map.views[tile.x];
 layout(std140) uniform MapViewBlock { MapView view; };
 #endif
 
+#ifndef INTERPOLATED_DEPTH
+layout(location = 0) in float axis_distance;  // m along the view's axis
+layout(location = 4) flat in vec4 range;      // the view's
+layout(location = 5) flat in float slope_scale;
+#endif
+
 #ifdef SECOND_LAYER
 uniform sampler2D first_depths;
 // Positions are floats: this much is lost on the way to a depth.
-float rounding_of_depth() { return exp2(-21.0) * view.range.y * view.range.z; }
-#endif
-
-layout(location = 0) in vec3 world_position;
-#ifdef MASKED
-layout(location = 1) in vec2 surface_uv;
-layout(location = 2) in float vertex_alpha;
-layout(push_constant) uniform DrawBlock { uint material; } draw;
+float rounding_of_depth() { return exp2(-21.0) * range.y * range.z; }
 #endif
 
 void main() {
-#ifdef MASKED
-  MaterialData material = materials[draw.material];
-  float alpha = material.base_color.a * vertex_alpha;
-  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
-  if (alpha < material.surface.z) discard;
-#endif
+  cut_holes();
 #ifndef INTERPOLATED_DEPTH
-  float distance = dot(world_position - view.origin.xyz, view.forward.xyz);
+  float distance = axis_distance;
 #ifdef LAYER
   // One of two layers; layered_depths.frag makes a map of both.
-  gl_FragDepth = clamp(even_depth_of(view.range, distance), 0.0, 1.0);
+  gl_FragDepth = clamp(even_depth_of(range, distance), 0.0, 1.0);
 #ifdef SECOND_LAYER
   float first = texelFetch(first_depths, ivec2(gl_FragCoord.xy), 0).r;
   // Facets that meet in an edge lie at one depth, but for rounding.
@@ -44,15 +38,15 @@ void main() {
 #endif
 #else
   float texel = texel_size(view, distance) * widest_texel(spread_at(view, gl_FragCoord.xy));
-  float bias = view.range.w;
+  float bias = range.w;
   if (moves_facet(gl_FrontFacing)) {
     // What this facet spans over the kernel; a facet seen edge-on is not followed to infinity.
     float span = max(abs(dFdx(distance)), abs(dFdy(distance)));
-    bias += map.texel.w * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
+    bias += slope_scale * (1.0 + 2.0 * map.texel.y) * min(span, 10.0 * texel);
   }
-  bias += map.texel.w * rounding_grant(view.range, distance);
-  float depth = clamp(even_depth_of(view.range, distance + bias), 0.0, 1.0);
-  float kept = kept_depth(view.range, depth);
+  bias += slope_scale * rounding_grant(range, distance);
+  float depth = clamp(even_depth_of(range, distance + bias), 0.0, 1.0);
+  float kept = kept_depth(range, depth);
 #ifdef TILE
 #ifdef variant_depth_bits_16
   kept = round(65535.0 * kept) / 65535.0;

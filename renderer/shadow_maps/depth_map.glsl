@@ -18,7 +18,7 @@ int view_count() { return int(map.texel.z); }
 #endif
 
 /// Texels along a side of a view.
-float view_size(int view) { return map.views[view].texels.x; }
+float view_size(int view) { return map_view(view).texels.x; }
 
 /// The views that tell of a receiver, as the layout chooses them.
 struct ViewChoice {
@@ -30,7 +30,7 @@ struct ViewChoice {
 /// Place on a view in texels, 0 to the view's size; w as the view's clip matrix has it, above 0 before
 /// the light.
 vec3 place_on_view(int view, vec3 position) {
-  vec4 clip = map.views[view].clip_from_world * vec4(position, 1.0);
+  vec4 clip = map_view(view).clip_from_world * vec4(position, 1.0);
   return vec3((0.5 + 0.5 * clip.xy / clip.w) * view_size(view), clip.w);
 }
 
@@ -89,7 +89,7 @@ vec3 over_texels(Spread spread, vec3 f) {
 MapPoint locate(ShadowQuery query, int view_index, float kernel_radius) {
   MapPoint point;
   point.view = view_index;
-  MapView view = map.views[view_index];
+  MapView view = map_view(view_index);
   point.range = view.range;
   bool perspective = view.origin.w > 0.5;
   vec3 position = query.position;

@@ -20,7 +20,7 @@ vec4 draw_diagnostic_map(ShadowQuery query, vec2 picture) {
 #else
   point.view = 0;
 #endif
-  point.range = map.views[point.view].range;
+  point.range = map_view(point.view).range;
   return vec4(vec3(fetch_depth(point, ivec2(picture * view_size(point.view)))), 1.0);
 }
 
@@ -59,7 +59,7 @@ vec4 draw_diagnostic_tiles(ShadowQuery query, vec2 picture) {
   if (edge > 0.49) return vec4(0.0, 0.0, 0.0, 1.0);
   if (edge > 0.35) return vec4(color_of_size(view_size(view)), 1.0);
 #ifdef TEXELS_IN_BUFFER
-  return vec4(vec3(sqrt(map.views[view].choice.y)), 1.0);
+  return vec4(vec3(sqrt(map_view(view).choice.y)), 1.0);
 #else
   return vec4(vec3(1.0), 1.0);
 #endif

@@ -91,6 +91,10 @@ class Device {
   VkPhysicalDeviceFeatures features{};  ///< those that are switched on
   DeviceInfo info;
 
+  /// Whether fragment stages read a block's members once for each lane, as Mesa 22.3 compiles them
+  /// for processors (emit_load_ubo in lp_bld_nir_soa.c). See ProgramSource::constants_from_vertex.
+  bool reads_blocks_by_lane() const { return info.type == "cpu"; }
+
   PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;  ///< null without the extension
   PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;

@@ -11,7 +11,7 @@ namespace {
 std::string key_of(const ProgramSource& source) {
   std::ostringstream key;
   for (const auto& [stage, path] : source.stages) key << stage << path << '\n';
-  key << source.preamble << '\n';
+  key << source.preamble << '\n' << source.constants_from_vertex << '\n';
   return key.str();
 }
 

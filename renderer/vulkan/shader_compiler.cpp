@@ -28,6 +28,17 @@ EShLanguage language_of(VkShaderStageFlagBits stage) {
   }
 }
 
+std::string definition_of(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return "#define VERTEX_STAGE\n";
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return "#define FRAGMENT_STAGE\n";
+    default:
+      return {};
+  }
+}
+
 VkDescriptorType descriptor_type(const glslang::TType& type) {
   if (type.getBasicType() == glslang::EbtSampler) {
     const glslang::TSampler& sampler = type.getSampler();
@@ -181,12 +192,14 @@ CompiledProgram compile(const ShaderLibrary& library, const ProgramSource& sourc
   start_glslang();
   constexpr auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   LibraryIncluder includer(library);
-  const std::string head = "#version 460\n#extension GL_GOOGLE_include_directive : require\n" +
-                           source.preamble + "\n#line 1\n";
   std::vector<std::unique_ptr<glslang::TShader>> shaders;
   glslang::TProgram program;
   for (const auto& [stage, path] : source.stages) {
     auto& shader = shaders.emplace_back(std::make_unique<glslang::TShader>(language_of(stage)));
+    const std::string head =
+        "#version 460\n#extension GL_GOOGLE_include_directive : require\n" + definition_of(stage) +
+        (source.constants_from_vertex ? "#define CONSTANTS_FROM_VERTEX\n" : "") + source.preamble +
+        "\n#line 1\n";
     const char* texts[] = {head.c_str(), library.text(path).c_str()};
     const char* names[] = {"preamble", path.c_str()};
     shader->setStringsWithLengthsAndNames(texts, nullptr, names, 2);

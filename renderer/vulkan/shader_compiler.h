@@ -29,6 +29,9 @@ class ShaderLibrary {
 struct ProgramSource {
   std::map<VkShaderStageFlagBits, std::string> stages;  ///< stage -> path
   std::string preamble;
+  /// Defines CONSTANTS_FROM_VERTEX: the fragment stage takes what is constant over a draw from flat
+  /// inputs instead of blocks, and the vertex stage passes it.
+  bool constants_from_vertex = false;
 };
 
 /// A descriptor that the program reads or writes, under its GLSL name: the variable's for textures

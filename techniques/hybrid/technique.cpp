@@ -14,6 +14,7 @@ class Hybrid : public Technique {
  public:
   void require(const TechniqueInput& input, Requirements& needs) override {
     shadow_maps::DepthMap::require(input, needs);
+    needs.reads_sky = true;
     needs.stencil = true;
     needs.adjacency = true;
   }

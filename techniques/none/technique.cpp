@@ -8,6 +8,7 @@ class None : public Technique {
  public:
   void require(const TechniqueInput&, Requirements& needs) override {
     needs.casters = CasterUse::none;
+    needs.reads_sky = false;
   }
   void prepare(PrepareContext&) override {}
   void bind(vulkan::Bindings&) const override {}

@@ -14,7 +14,7 @@ struct ExtentOnMap {
 };
 
 ExtentOnMap extent_on_map(MapPoint point) {
-  MapView view = map.views[point.view];
+  MapView view = map_view(point.view);
   vec2 half_size = light_half_size();
   vec3 along_right = normalize(view.right.xyz);
   vec3 along_up = normalize(view.up.xyz);
@@ -39,7 +39,7 @@ ExtentOnMap extent_on_map(MapPoint point) {
 // light: divided by d, where a texel is one unit wide. Directional light: both without the division.
 float reach(MapPoint point, float blocker) {
   float gap = max(point.distance - blocker, 0.0);
-  MapView view = map.views[point.view];
+  MapView view = map_view(point.view);
   return view.origin.w > 0.5 ? gap / (from_light(view, blocker) * from_light(view, point.distance)) : gap;
 }
 

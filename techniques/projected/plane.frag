@@ -8,21 +8,11 @@ uniform sampler2D geometry_position;
 uniform usampler2D geometry_words;
 
 layout(location = 0) in float height;
-#ifdef MASKED
-layout(location = 1) in vec2 surface_uv;
-layout(location = 2) in float vertex_alpha;
-layout(push_constant) uniform DrawBlock { uint material; } draw;
-#endif
 
 layout(location = 0) out float out_covered;
 
 void main() {
-#ifdef MASKED
-  MaterialData material = materials[draw.material];
-  float alpha = material.base_color.a * vertex_alpha;
-  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
-  if (alpha < material.surface.z) discard;
-#endif
+  cut_holes();
   // Casters beyond the light would throw mirrored shadows, those below the plane inverted ones, and
   // those in the plane are the receiver itself.
   if (height <= receiver.heights.x || height >= receiver.heights.y) discard;

@@ -94,6 +94,36 @@ TEST_F(CameraPath, changes_no_picture_of_a_technique_without_memory) {
   }
 }
 
+TEST_F(CameraPath, leaves_nothing_of_earlier_surfaces_in_the_sky) {
+  // The picture's own camera sees sky above the ground, the one before it ground alone.
+  Scene scene = *request.scene;
+  Camera& own = scene.cameras.front();
+  own.projection = Projection::perspective;
+  own.position = {0.3, 0.6, 3.0};
+  own.target = {0.0, 0.6, 0.0};
+  own.up = {0.0, 1.0, 0.0};
+  for (const bool even : {true, false}) {
+    scene.background_low = {0.2f, 0.4f, 0.6f};
+    scene.background_high = even ? scene.background_low : glm::vec3(0.9f);
+    request.scene = std::make_shared<const Scene>(scene);
+    Camera down = own;
+    down.position = {0.1, 5.0, 0.1};
+    down.target = {0.0, 0.0, 0.0};
+    for (const TechniqueDescription& technique : techniques::all()) {
+      const techniques::Resolved resolved = techniques::resolve(technique.id, {});
+      request.technique = resolved.technique;
+      request.parameters = resolved.parameters;
+      request.light_samples = 16;
+      request.earlier_cameras.clear();
+      const Image8 alone = renderer.render(request).picture;
+      const std::uint8_t* sky = alone.pixels.data();
+      EXPECT_GT(sky[2], sky[0]) << technique.id << " shows no sky";
+      request.earlier_cameras = {down};
+      EXPECT_EQ(renderer.render(request).picture.pixels, alone.pixels) << technique.id;
+    }
+  }
+}
+
 /// Greatest distance between where a frame's points are seen and where its samples are, pixels.
 double greatest_shift(const PathFrame& frame) {
   double greatest = 0.0;

@@ -108,6 +108,7 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
         {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
         {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/filters/blurred_map.frag"}};
     source.preamble = context.declarations;
+    source.constants_from_vertex = context.device.reads_blocks_by_lane();
     if (!encoder.empty()) source.preamble += encoding(encoder);
     if (settings.filter == MapFilter::logarithmic) source.preamble += "#define FILTER_LOGARITHMS\n";
     if (settings.filter == MapFilter::maximum) source.preamble += "#define FILTER_MAXIMUM\n";
@@ -124,16 +125,15 @@ void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const Blur
     context.pass(name, [&](vulkan::Commands& commands) {
       commands.begin_rendering(targets);
       commands.bind(pipeline, all);
-      commands.constants(view);
       commands.full_screen_triangle();
       commands.end_rendering();
     });
   };
   vulkan::Bindings rows;
-  rows.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
+  rows.texture_slice("depths", depth.image(), view, 0, vulkan::Sampling::nearest);
   run("encode and blur", settings.encoder, rows_, rows);
   vulkan::Bindings columns;
-  columns.texture("blurred_rows", rows_, vulkan::Sampling::nearest);
+  columns.texture_slice("blurred_rows", rows_, view, 0, vulkan::Sampling::nearest);
   run("blur", "", image_, columns);
 }
 

@@ -6,29 +6,26 @@
 // result is the greatest value.
 #include "renderer/shadow_maps/filters/blur_weights.glsl"
 
-#ifdef ENCODE
-uniform sampler2DArray shadow_map;
-const ivec2 direction = ivec2(1, 0);
-#else
-uniform sampler2DArray blurred_rows;
-const ivec2 direction = ivec2(0, 1);
-#endif
-
-layout(push_constant) uniform BlurBlock { uint view; } blur;
-
 layout(location = 0) out vec4 out_value;
 
-// Texels beyond the border repeat it.
-vec4 value_at(int offset) {
-  ivec2 texel = ivec2(gl_FragCoord.xy) + offset * direction;
+// Of one view. Texels beyond the border repeat it.
 #ifdef ENCODE
-  ivec2 last = textureSize(shadow_map, 0).xy - 1;
-  return encode_depth(texelFetch(shadow_map, ivec3(clamp(texel, ivec2(0), last), int(blur.view)), 0).r);
-#else
-  ivec2 last = textureSize(blurred_rows, 0).xy - 1;
-  return texelFetch(blurred_rows, ivec3(clamp(texel, ivec2(0), last), int(blur.view)), 0);
-#endif
+uniform sampler2D depths;
+
+vec4 value_at(int offset) {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  texel.x = clamp(texel.x + offset, 0, textureSize(depths, 0).x - 1);
+  return encode_depth(texelFetch(depths, texel, 0).r);
 }
+#else
+uniform sampler2D blurred_rows;
+
+vec4 value_at(int offset) {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  texel.y = clamp(texel.y + offset, 0, textureSize(blurred_rows, 0).y - 1);
+  return texelFetch(blurred_rows, texel, 0);
+}
+#endif
 
 #if defined(FILTER_LOGARITHMS)
 // The greatest term is kept apart: exponentials of the others then lie between 0 and 1.

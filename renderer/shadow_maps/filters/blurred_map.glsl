@@ -105,7 +105,7 @@ float read_logarithms(MapPoint point) {
 vec4 texel_in_picture(vec2 picture) {
   MapPoint point;
   point.view = square_at(picture, tiles_a_side);
-  point.range = map.views[point.view].range;
+  point.range = map_view(point.view).range;
   return encode_depth(fetch_depth(point, ivec2(picture * view_size(point.view))));
 }
 #else

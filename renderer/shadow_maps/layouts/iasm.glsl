@@ -3,7 +3,7 @@
 
 /// Place in tiles of the square, from the corner of the first.
 vec2 place_in_tiles(vec3 position) {
-  return 0.5 + 0.5 * (map.views[0].clip_from_world * vec4(position, 1.0)).xy;
+  return 0.5 + 0.5 * (map_view(0).clip_from_world * vec4(position, 1.0)).xy;
 }
 
 /// The tile at a place of the square; the nearest beyond its border.

@@ -8,6 +8,6 @@ int facing_view(vec3 offset) {
 }
 
 ViewChoice choose_views(vec3 position) {
-  int view = facing_view(position - map.views[0].origin.xyz);
+  int view = facing_view(position - map_view(0).origin.xyz);
   return ViewChoice(is_on_view(view, position) ? view : -1, -1, 0.0);
 }

@@ -2,9 +2,7 @@
 // `depth_bits` choose; techniques without them keep it as it is, in 32 bits. `range` is a view's.
 #ifndef PENUMBRA_DEPTH_CODING_GLSL
 #define PENUMBRA_DEPTH_CODING_GLSL
-#include "renderer/shaders/shader_types.h"
-
-layout(std140) uniform MapBlock { MapData map; };
+#include "renderer/shaders/map.glsl"
 
 /// Distance along a view's axis as an even depth.
 float even_depth_of(vec4 range, float distance) { return (distance - range.x) * range.z; }
@@ -49,7 +47,7 @@ float widest_texel(Spread spread) {
 #ifdef variant_depth_hyperbolic
 // As a projection leaves it after the division by w: even in 1/z. Parallel rays have no such division;
 // the views of a light are all of one kind.
-bool is_divided() { return map.views[0].origin.w > 0.5; }
+bool is_divided() { return map_view(0).origin.w > 0.5; }
 
 float coded_depth(vec4 range, float depth) {
   if (!is_divided()) return depth;

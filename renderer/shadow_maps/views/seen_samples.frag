@@ -4,26 +4,13 @@
 #include "renderer/shaders/shadow_query.glsl"
 
 layout(location = 0) in vec3 world_position;
-#ifdef MASKED
-layout(location = 1) in vec2 surface_uv;
-layout(location = 2) in float vertex_alpha;
-layout(push_constant) uniform DrawBlock {
-  uint material;
-}
-draw;
-#endif
 
 layout(location = 0) out vec4 seen_position;
 
 void main() {
   vec3 right = dFdx(world_position), down = dFdy(world_position);
   vec3 normal = cross(right, down);
-#ifdef MASKED
-  MaterialData material = materials[draw.material];
-  float alpha = material.base_color.a * vertex_alpha;
-  if (material.surface.w > 0.5) alpha *= texture(surface_texture, surface_uv).a;
-  if (alpha < material.surface.z) discard;
-#endif
+  cut_holes();
   bool has_eye = frame.camera_position.w > 0.5;
   vec3 to_camera =
       has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
