@@ -12,7 +12,8 @@ namespace penumbra::experiments {
 class Results {
  public:
   /// Reads what is there; a last line that was cut off is dropped. The file is this process's until
-  /// the object or the process ends, whatever becomes of its children. Throws Error `busy` where another process writes it, `unwritable`.
+  /// the object or the process ends, whatever becomes of its children. Throws Error `busy` where
+  /// another process writes it, `unwritable`.
   explicit Results(const std::filesystem::path& file);
   ~Results();
   Results(const Results&) = delete;

@@ -5,6 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "renderer/shaders/shader_types.h"
+
 namespace penumbra {
 namespace {
 
@@ -31,17 +33,13 @@ std::string declaration(const Member& member) {
   return (member.real ? "float " : "int ") + member.name + ";\n";
 }
 
-/// Flat words that a vertex stage passes, after those of frame, light and map: see
-/// full_screen.vert.
-constexpr std::size_t first_location = 27;
-constexpr std::size_t most_words = 16;
-
+/// How many a vertex stage passes, each a word; the rest is read from the block.
 std::size_t passed_words(const std::vector<Member>& block) {
-  return std::min(block.size(), most_words);
+  return std::min<std::size_t>(block.size(), shader::passed_parameters);
 }
 
 std::string words(const char* direction, const std::vector<Member>& block) {
-  return "layout(location = " + std::to_string(first_location) + ") flat " + direction +
+  return "layout(location = " + std::to_string(shader::parameter_location) + ") flat " + direction +
          " uvec4 parameter_words[" + std::to_string((passed_words(block) + 3) / 4) + "];\n";
 }
 

@@ -3,17 +3,15 @@
 // Alone, since the others would count among the components that a stage may write.
 out gl_PerVertex { vec4 gl_Position; };
 
-// Passes what fragments would read from blocks, at the locations that these are declared at: 0 to 4 the frame,
-// 5 to 11 the light, 12 to 26 the one view of a map, 27 to 30 parameters. With gl_Position these are the 32 that all
-// devices have.
+// Passes what fragments would read from blocks, where these are declared as inputs.
 #ifdef CONSTANTS_FROM_VERTEX
 #include "renderer/shaders/frame.glsl"
 
-layout(location = 0) flat out vec4 frame_camera_position;
-layout(location = 1) flat out vec4 frame_camera_direction;
-layout(location = 2) flat out vec4 frame_ambient;
-layout(location = 3) flat out vec4 frame_size;
-layout(location = 4) flat out uvec4 frame_options;
+layout(location = frame_location) flat out vec4 frame_camera_position;
+layout(location = frame_location + 1) flat out vec4 frame_camera_direction;
+layout(location = frame_location + 2) flat out vec4 frame_ambient;
+layout(location = frame_location + 3) flat out vec4 frame_size;
+layout(location = frame_location + 4) flat out uvec4 frame_options;
 
 void pass_frame() {
   frame_camera_position = frame.camera_position;
@@ -26,7 +24,7 @@ void pass_frame() {
 #ifdef PASSES_LIGHT
 #include "renderer/shaders/light.glsl"
 
-layout(location = 5) flat out LightData passed_light;
+layout(location = light_location) flat out LightData passed_light;
 
 void pass_light() { passed_light = light; }
 #else
@@ -36,8 +34,8 @@ void pass_light() {}
 #if defined(PASSES_MAP) && defined(ONE_VIEW)
 #include "renderer/shaders/map.glsl"
 
-layout(location = 12) flat out vec4 map_texel;
-layout(location = 13) flat out MapView only_view;
+layout(location = map_location) flat out vec4 map_texel;
+layout(location = view_location) flat out MapView only_view;
 
 void pass_map() {
   map_texel = map.texel;

@@ -5,7 +5,7 @@
 #include "renderer/shaders/shader_types.h"
 
 #if defined(CONSTANTS_FROM_VERTEX) && defined(PASSES_LIGHT) && defined(FRAGMENT_STAGE)
-layout(location = 5) flat in LightData light;
+layout(location = light_location) flat in LightData light;
 #else
 layout(std140) uniform LightBlock { LightData light; };
 #endif

@@ -4,8 +4,8 @@
 #include "renderer/shaders/shader_types.h"
 
 #if defined(CONSTANTS_FROM_VERTEX) && defined(PASSES_MAP) && defined(ONE_VIEW) && defined(FRAGMENT_STAGE)
-layout(location = 12) flat in vec4 map_texel;
-layout(location = 13) flat in MapView only_view;
+layout(location = map_location) flat in vec4 map_texel;
+layout(location = view_location) flat in MapView only_view;
 struct MapOfOneView { vec4 texel; };
 MapOfOneView map = MapOfOneView(map_texel);
 MapView map_view(int view) { return only_view; }

@@ -29,6 +29,16 @@ PENUMBRA_CONSTANT int extent_kind_sphere = 1;
 PENUMBRA_CONSTANT int extent_kind_disc = 2;
 PENUMBRA_CONSTANT int extent_kind_rectangle = 3;
 
+// Where a vertex stage passes what is constant over a draw (CONSTANTS_FROM_VERTEX): of the frame 5
+// vectors, of the light 7, of a map with one view 15, and 4 of parameters. With gl_Position these
+// are the 32 that all devices have.
+PENUMBRA_CONSTANT int frame_location = 0;
+PENUMBRA_CONSTANT int light_location = 5;
+PENUMBRA_CONSTANT int map_location = 12;
+PENUMBRA_CONSTANT int view_location = 13;
+PENUMBRA_CONSTANT int parameter_location = 27;
+PENUMBRA_CONSTANT int passed_parameters = 16;
+
 /// Constants of a frame. World space is the scene's, moved by SceneFrame::origin: offsets of 1e7 m
 /// cost no precision.
 struct FrameData {
