@@ -79,6 +79,7 @@ void validate_mesh(const Mesh& mesh, std::size_t materials, const std::string& w
   for (const glm::vec2& uv : mesh.uvs) check(finite(uv), where, "has a uv that is not finite");
   for (const glm::vec4& color : mesh.colors)
     check(finite(color), where, "has a color that is not finite");
+  check(mesh.indices.size() % 3 == 0, where, "has indices of an incomplete triangle");
   for (const std::uint32_t index : mesh.indices)
     check(index < vertices, where, "has an index beyond its positions");
   for (const Primitive& primitive : mesh.primitives) {

@@ -29,6 +29,7 @@ TEST(Validate, NamesTheElementAtFault) {
       {"meshes[1] 'standing': has a position",
        [](Scene& s) { s.meshes[1].positions[0].y = INFINITY; }},
       {"meshes[1] 'standing': has an index", [](Scene& s) { s.meshes[1].indices[5] = 24; }},
+      {"meshes[1] 'standing': has indices of", [](Scene& s) { s.meshes[1].indices.push_back(0); }},
       {"meshes[1] 'standing': has a primitive beyond",
        [](Scene& s) { s.meshes[1].primitives[0].first_index = 4294967295u; }},
       {"instances[0] 'ground': mesh", [](Scene& s) { s.instances[0].mesh = 99; }},

@@ -114,6 +114,9 @@ TEST(TriangleOrder, bears_meshes_without_triangles) {
   mesh.normals = {glm::vec3(0.0f, 0.0f, 1.0f)};
   mesh.primitives = {{0, 0, 0}};
   EXPECT_EQ(triangle_order(mesh).first_at.size(), 1u);
+  Mesh some = torn_square(false);
+  some.primitives.push_back({0, 0, 0});
+  EXPECT_EQ(triangle_order(some).corners.size(), some.indices.size());
 }
 
 }  // namespace
