@@ -1,11 +1,11 @@
-// What it costs to filter a map, by full-screen passes and in compute:
+// What it costs to filter a map, in several ways:
 //   bench_map_filters [--repeats N] [--device NAME]
 //
 // A separable filter over two moments of a depth map, rows then columns: as the techniques do it,
-// by two full-screen fragment passes; in compute with every read from the image; and in compute
-// with what a group reads kept in shared memory. Beside them a summed-area table of the same
-// moments. Medians of device time, ms; the ways take turns. "difference" is the greatest between
-// their results.
+// where an invocation filters a run of texels; with an invocation for each texel, which reads all
+// from the image; and such with what a group reads kept in shared memory. Beside them a
+// summed-area table of the same moments. Medians of device time, ms; the ways take turns.
+// "difference" is the greatest between their results.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -150,21 +150,21 @@ class Filters {
   }
 
   void record(vulkan::Recorder& recorder) {
-    recorder.pass("full screen", [&](vulkan::Commands& commands) {
-      draw(commands, shadow_maps::encoding("techniques/vsm/encoder.glsl"), "shadow_map", depth_,
-           rows_);
+    recorder.pass("runs", [&](vulkan::Commands& commands) {
+      filter_runs(commands, shadow_maps::encoding("techniques/vsm/encoder.glsl"), "depths", depth_,
+                  rows_);
       commands.barrier();
-      draw(commands, "", "blurred_rows", rows_, results_[0]);
+      filter_runs(commands, "", "blurred_rows", rows_, results_[0]);
     });
-    recorder.pass("compute",
+    recorder.pass("texels",
                   [&](vulkan::Commands& commands) { compute(commands, "", results_[1]); });
-    recorder.pass("compute, shared", [&](vulkan::Commands& commands) {
+    recorder.pass("texels, shared", [&](vulkan::Commands& commands) {
       compute(commands, "#define SHARED\n", results_[2]);
     });
     recorder.pass("summed area", [&](vulkan::Commands& commands) { sum(commands); });
   }
 
-  /// Greatest difference between the full-screen result and the others.
+  /// Greatest difference between the result of runs and the others.
   double difference(vulkan::Recorder& recorder) {
     std::memset(difference_.mapped(), 0, 16);
     for (const int other : {1, 2}) {
@@ -189,8 +189,7 @@ class Filters {
     description.format = format;
     description.width = description.height = subject_.size;
     description.array_view = true;
-    description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                        VK_IMAGE_USAGE_STORAGE_BIT;
+    description.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     return vulkan::Image(device_, ledger_, name, description);
   }
 
@@ -204,25 +203,16 @@ class Filters {
     commands.dispatch(groups, groups);
   }
 
-  void draw(vulkan::Commands& commands, const std::string& encoding, const char* name,
-            const vulkan::Image& source, const vulkan::Image& target) {
-    vulkan::ProgramSource program;
-    program.stages = {
-        {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-        {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/filters/blurred_map.frag"}};
-    program.preamble = declarations_ + encoding;
-    vulkan::GraphicsState state;
-    state.color_formats = {format_};
-    vulkan::RenderTargets targets;
-    targets.width = targets.height = subject_.size;
-    targets.colors = {{target.slice(0), false, {}}};
+  void filter_runs(vulkan::Commands& commands, const std::string& encoding, const char* name,
+                   const vulkan::Image& source, const vulkan::Image& target) {
     vulkan::Bindings bindings;
-    bindings.texture(name, source, vulkan::Sampling::nearest);
-    commands.begin_rendering(targets);
-    commands.bind(pipelines_.graphics(program, state), bindings);
-    commands.constants(std::uint32_t{0});
-    commands.full_screen_triangle();
-    commands.end_rendering();
+    bindings.texture_slice(name, source, 0, 0, vulkan::Sampling::nearest);
+    bindings.storage_slice("filtered_map", target, 0);
+    commands.bind(
+        pipelines_.compute(shadow_maps::blur_program,
+                           declarations_ + shadow_maps::blur_definitions(format_) + encoding),
+        bindings);
+    shadow_maps::dispatch_blur(commands, subject_.size);
   }
 
   void compute(vulkan::Commands& commands, const std::string& way, const vulkan::Image& result) {
@@ -281,13 +271,13 @@ void print_row(vulkan::Device& device, vulkan::PipelineCache& pipelines, const C
     for (const vulkan::PassRecord& record : recorder.records())
       times[record.name].push_back(record.ms);
   }
-  const double drawn = penumbra::bench::median(times.at("full screen"));
-  const double computed = penumbra::bench::median(times.at("compute"));
-  const double shared = penumbra::bench::median(times.at("compute, shared"));
+  const double runs = penumbra::bench::median(times.at("runs"));
+  const double texels = penumbra::bench::median(times.at("texels"));
+  const double shared = penumbra::bench::median(times.at("texels, shared"));
   std::printf("| %u | %s | %s | %lld | %.3g | %.3g | %.3g | %.2f | %.3g | %.1e |\n", subject.size,
               subject.precision.c_str(), subject.filter.c_str(),
-              static_cast<long long>(subject.radius), drawn, computed, shared,
-              drawn / std::min(computed, shared), penumbra::bench::median(times.at("summed area")),
+              static_cast<long long>(subject.radius), runs, texels, shared,
+              runs / std::min(texels, shared), penumbra::bench::median(times.at("summed area")),
               difference);
   std::fflush(stdout);
 }
@@ -304,8 +294,8 @@ void run(const Options& options) {
   std::printf("Device: %s (%s). Medians of %d, ms.\n\n", device.info.name.c_str(),
               device.info.driver.c_str(), options.repeats);
   std::printf(
-      "| map | format | filter | radius | full screen | compute | compute, shared | full screen / "
-      "better compute | summed area | difference |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| map | format | filter | radius | runs | texels | texels, shared | runs / better texels | "
+      "summed area | difference |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::uint32_t size : {512u, 1024u})
     for (const char* precision : {"fp16", "fp32"})
       for (const char* filter : {"box", "gauss"})

@@ -5,9 +5,9 @@
 #include <bit>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
+#include "renderer/frame/components.h"
 #include "renderer/frame/gpu_scene.h"
 
 namespace penumbra {
@@ -29,22 +29,6 @@ struct Triangle {
   std::array<std::uint32_t, 3> opposite{none, none, none};  ///< across the side that starts there
   bool closed = true;
   bool degenerate = false;
-};
-
-/// Sets of triangles that hang together.
-class Components {
- public:
-  explicit Components(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t root(std::uint32_t t) {
-    while (parent_[t] != t) t = parent_[t] = parent_[parent_[t]];
-    return t;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
 };
 
 struct PositionHash {

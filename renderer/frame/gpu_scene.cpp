@@ -10,7 +10,6 @@
 #include "renderer/error.h"
 #include "renderer/frame/split_triangles.h"
 #include "renderer/frame/triangle_order.h"
-#include "renderer/scene/coverage.h"
 #include "renderer/shaders/shader_types.h"
 
 namespace penumbra {
@@ -110,7 +109,8 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
     : scene_(std::move(scene)),
       uses_(std::move(uses)),
       needed_textures_(std::move(textures)),
-      frame_(frame) {
+      frame_(frame),
+      coverages_(*scene_) {
   // Of the whole scene: what the plan leaves out must not move a single bit of the rest.
   const Bounds bounds = world_bounds(*scene_);
   if (const Bounds part = near_part(bounds); !part.empty()) {
@@ -139,19 +139,27 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
   upload_materials(device);
 }
 
-std::vector<GpuScene::Part> GpuScene::find_parts() const {
-  Coverages coverages(*scene_);
+std::vector<GpuScene::Part> GpuScene::find_parts() {
   std::vector<Part> parts;
+  std::map<std::uint32_t, double> largest;  // thing that has a material, m
   for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
     if (!used(i)) continue;
-    const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
-    for (const Primitive& primitive : mesh.primitives)
-      if (const Coverage coverage = coverages.of(mesh, primitive); coverage != Coverage::nothing)
-        parts.push_back({i, &primitive, coverage == Coverage::holes});
+    const Instance& instance = scene_->instances[i];
+    const double size = glm::length(instance_bounds(*scene_, instance).size());
+    const Mesh& mesh = scene_->meshes[instance.mesh];
+    for (const Primitive& primitive : mesh.primitives) {
+      const Coverage coverage = coverages_.of(mesh, primitive);
+      if (coverage == Coverage::nothing) continue;
+      parts.push_back({i, &primitive, coverage == Coverage::holes});
+      double& so_far = largest[primitive.material];
+      so_far = std::max(so_far, size);
+    }
   }
-  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return a.primitive->material < b.primitive->material;
-  });
+  const auto place = [&](const Part& part) {
+    return std::pair(largest[part.primitive->material], part.primitive->material);
+  };
+  std::stable_sort(parts.begin(), parts.end(),
+                   [&](const Part& a, const Part& b) { return place(a) < place(b); });
   return parts;
 }
 
@@ -194,8 +202,11 @@ glm::dmat4 GpuScene::world_from_object(std::uint32_t instance) const {
 
 const TriangleOrder& GpuScene::order_of(std::uint32_t mesh) {
   const auto [order, is_new] = orders_.try_emplace(mesh);
-  if (is_new) order->second = triangle_order(scene_->meshes[mesh]);
-  return order->second;
+  if (!is_new) return order->second;
+  std::vector<bool> solid;
+  for (const Primitive& primitive : scene_->meshes[mesh].primitives)
+    solid.push_back(coverages_.of(scene_->meshes[mesh], primitive) == Coverage::solid);
+  return order->second = triangle_order(scene_->meshes[mesh], solid);
 }
 
 void GpuScene::add_range(const Part& part) {
@@ -225,7 +236,12 @@ void GpuScene::add_range(const Part& part) {
     range.high = glm::max(range.high, position_list_[index]);
   }
   // Holes are looked up by the corners that the mesh has.
-  if (is_far() && !range.masked) split_long_triangles(range.first_index, part.instance);
+  if (is_far() && !range.masked)
+    split_long_triangles(range.first_index, part.instance);
+  else
+    range.closed_count = order_of(instance.mesh)
+                             .closed[static_cast<std::size_t>(
+                                 &primitive - scene_->meshes[instance.mesh].primitives.data())];
   range.index_count = static_cast<std::uint32_t>(index_list_.size()) - range.first_index;
   ranges_.push_back(range);
 }

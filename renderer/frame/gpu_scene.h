@@ -12,6 +12,7 @@
 #include "renderer/frame/adjacency.h"
 #include "renderer/frame/triangle_order.h"
 #include "renderer/plan/plan.h"
+#include "renderer/scene/coverage.h"
 #include "renderer/scene/scene.h"
 #include "renderer/vulkan/commands.h"
 
@@ -21,6 +22,7 @@ namespace penumbra {
 struct DrawRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
+  std::uint32_t closed_count = 0;  ///< of its first indices: those of closed bodies
   std::uint32_t material = 0;
   std::uint32_t instance = 0;
   glm::vec3 low{0.0f};  ///< box, world
@@ -129,7 +131,8 @@ class GpuScene {
     const Primitive* primitive;
     bool holes;  ///< its texture has some
   };
-  std::vector<Part> find_parts() const;  ///< by material
+  /// By material; those that large things have last, which then are mostly hidden.
+  std::vector<Part> find_parts();
   void add_vertices();
   const TriangleOrder& order_of(std::uint32_t mesh);
   void add_range(const Part& part);
@@ -159,6 +162,7 @@ class GpuScene {
   std::vector<glm::vec3> position_list_;
   std::vector<std::uint32_t> index_list_;
   std::vector<DrawRange> ranges_;
+  Coverages coverages_;
   // Freed after upload.
   std::vector<std::byte> surface_list_;
   std::map<std::uint32_t, TriangleOrder> orders_;  ///< by mesh

@@ -3,6 +3,32 @@
 #include "renderer/scene/convex_clip.h"
 
 namespace penumbra {
+namespace {
+
+/// Triangles that are drawn at once.
+struct CasterDraw {
+  const DrawRange& range;  ///< the first
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;
+};
+
+/// Neighbours that are drawn alike become one; opaque ones whatever their material.
+void add_draw(std::vector<CasterDraw>& draws, const CasterDraw& draw) {
+  if (draw.count == 0) return;
+  if (!draws.empty()) {
+    CasterDraw& last = draws.back();
+    const bool alike = last.cull == draw.cull && last.range.masked == draw.range.masked &&
+                       (!draw.range.masked || last.range.material == draw.range.material);
+    if (alike && last.first + last.count == draw.first) {
+      last.count += draw.count;
+      return;
+    }
+  }
+  draws.push_back(draw);
+}
+
+}  // namespace
 
 DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
                                           const vulkan::Bindings& bindings,
@@ -31,32 +57,26 @@ DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const Cast
     return may_touch(box.center(), 0.5 * glm::length(box.size()), sides);
   };
   DrawnCasters counted;
-  for (std::size_t i = 0; i < ranges.size();) {
-    const DrawRange& first = ranges[i];
-    if (!drawn(first)) {
-      ++i;
-      continue;
-    }
-    // Neighbouring ranges that are drawn alike become one draw; opaque ones whatever their
-    // material.
-    std::uint32_t count = first.index_count;
-    std::size_t next = i + 1;
-    while (next < ranges.size() && drawn(ranges[next]) && ranges[next].masked == first.masked &&
-           ranges[next].double_sided == first.double_sided &&
-           (!first.masked || ranges[next].material == first.material)) {
-      count += ranges[next].index_count;
-      ++next;
-    }
-    if (first.masked)
-      all.texture("surface_texture", scene.texture_of(first.material),
+  std::vector<CasterDraw> draws;
+  for (const DrawRange& range : ranges) {
+    if (!drawn(range)) continue;
+    counted.triangles += range.index_count / 3;
+    ++counted.ranges;
+    const VkCullModeFlags cull =
+        range.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull;
+    std::uint32_t closed =
+        program.first_surface_alone && !light.is_within(range.box()) ? range.closed_count : 0;
+    add_draw(draws, {range, range.first_index, closed, VK_CULL_MODE_BACK_BIT});
+    add_draw(draws, {range, range.first_index + closed, range.index_count - closed, cull});
+  }
+  for (const CasterDraw& draw : draws) {
+    if (draw.range.masked)
+      all.texture("surface_texture", scene.texture_of(draw.range.material),
                   vulkan::Sampling::linear_repeat);
-    commands.bind(pipeline_for(first.masked), all);
-    if (first.masked) commands.constants(first.material);
-    commands.cull(first.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull);
-    vkCmdDrawIndexed(commands.handle(), count, 1, first.first_index, 0, 0);
-    counted.triangles += count / 3;
-    counted.ranges += next - i;
-    i = next;
+    commands.bind(pipeline_for(draw.range.masked), all);
+    if (draw.range.masked) commands.constants(draw.range.material);
+    commands.cull(draw.cull);
+    vkCmdDrawIndexed(commands.handle(), draw.count, 1, draw.first, 0, 0);
   }
   return counted;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "renderer/frame/closed_bodies.h"
 #include "renderer/scene/scene.h"
 
 namespace penumbra {
@@ -81,15 +82,38 @@ Indices neighbours_together(Indices places, Numbers& numbers) {
   return triangles;
 }
 
+/// By triangle of each primitive, whether it belongs to a closed body.
+std::vector<std::vector<bool>> closed_triangles(const Mesh& mesh, const Indices& places,
+                                                const std::vector<bool>& solid) {
+  Indices corners;
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    const auto first = places.begin() + mesh.primitives[p].first_index;
+    if (solid[p]) corners.insert(corners.end(), first, first + mesh.primitives[p].index_count);
+  }
+  const std::vector<bool> found = in_closed_bodies(mesh.positions, corners);
+  auto next = found.begin();
+  std::vector<std::vector<bool>> closed;
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    auto& own = closed.emplace_back(mesh.primitives[p].index_count / 3);
+    if (!solid[p]) continue;
+    std::copy_n(next, own.size(), own.begin());
+    next += static_cast<std::ptrdiff_t>(own.size());
+  }
+  return closed;
+}
+
 }  // namespace
 
-TriangleOrder triangle_order(const Mesh& mesh) {
+TriangleOrder triangle_order(const Mesh& mesh, const std::vector<bool>& solid) {
   const std::size_t vertices = mesh.positions.size();
   TriangleOrder order;
   order.corners = mesh.indices;
   order.first_at.resize(vertices);
   std::iota(order.first_at.begin(), order.first_at.end(), 0u);
-  if (mesh.indices.empty()) return order;
+  if (mesh.indices.empty()) {
+    order.closed.resize(mesh.primitives.size());
+    return order;
+  }
 
   std::vector<meshopt_Stream> streams;
   add_stream(streams, mesh.positions);
@@ -104,15 +128,23 @@ TriangleOrder triangle_order(const Mesh& mesh) {
   meshopt_generateShadowIndexBufferMulti(welded.data(), mesh.indices.data(), welded.size(),
                                          vertices, streams.data(), streams.size());
 
+  const auto closed = closed_triangles(mesh, places, solid);
   Numbers numbers(vertices);
-  for (const Primitive& primitive : mesh.primitives) {
-    const auto first = places.begin() + primitive.first_index;
-    const Indices triangles =
-        neighbours_together({first, first + primitive.index_count / 3 * 3}, numbers);
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k)
-        order.corners[primitive.first_index + 3 * t + k] =
-            welded[primitive.first_index + std::size_t{triangles[t]} * 3 + k];
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    const std::uint32_t first = mesh.primitives[p].first_index;
+    std::uint32_t* next = order.corners.data() + first;
+    for (const bool in_body : {true, false}) {
+      Indices starts, own;
+      for (std::size_t t = 0; t < closed[p].size(); ++t) {
+        if (closed[p][t] != in_body) continue;
+        const auto start = static_cast<std::uint32_t>(first + 3 * t);
+        starts.push_back(start);
+        own.insert(own.end(), places.begin() + start, places.begin() + start + 3);
+      }
+      if (in_body) order.closed.push_back(static_cast<std::uint32_t>(own.size()));
+      for (const std::uint32_t t : neighbours_together(own, numbers))
+        next = std::copy_n(welded.begin() + starts[t], 3, next);
+    }
   }
   return order;
 }

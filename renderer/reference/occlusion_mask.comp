@@ -8,6 +8,7 @@
 #include "renderer/shaders/lighting.glsl"
 #include "renderer/shaders/light_points.glsl"
 #include "renderer/shaders/sample_list.glsl"
+#include "renderer/shaders/texel.glsl"
 
 layout(std140) uniform ShaftBlock { ShaftData shaft_data; };
 
@@ -246,8 +247,8 @@ void main() {
 #ifndef FIND_CANDIDATES
   if (!inside) return;
 #endif
-  vec4 position = texelFetch(geometry_position, texel, 0);
-  uvec4 words = texelFetch(geometry_words, texel, 0);
+  vec4 position = texel_of(geometry_position, texel);
+  uvec4 words = texel_of(geometry_words, texel);
   vec3 normal = geometric_normal_of(position, words);
   // In the hierarchy's units, where no scene is larger than 2.
   float scale = shaft_data.whole_high.w;

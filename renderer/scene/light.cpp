@@ -176,6 +176,10 @@ glm::dvec3 WorldLight::extent_point(const glm::dvec3& offset) const {
   return is_at_infinity(*source) ? glm::normalize(moved - direction) : position + moved;
 }
 
+bool WorldLight::is_within(const Bounds& box) const {
+  return center.w != 0.0 && contains(box, position);
+}
+
 bool WorldLight::may_reach(const glm::dvec3& middle, double radius) const {
   if (is_at_infinity(*source)) return true;
   const glm::dvec3 offset = middle - position;

@@ -93,6 +93,9 @@ struct WorldLight {
   /// The point at an offset of extent_offset: a position, or the unit direction to it at infinity.
   glm::dvec3 extent_point(const glm::dvec3& offset) const;
 
+  /// Whether its centre lies in a box; never at infinity.
+  bool is_within(const Bounds& box) const;
+
   /// False only if none of a ball is inside its cone and range.
   bool may_reach(const glm::dvec3& middle, double radius) const;
 };

@@ -9,10 +9,10 @@ layout(location = frame_location) flat in vec4 frame_camera_position;
 layout(location = frame_location + 1) flat in vec4 frame_camera_direction;
 layout(location = frame_location + 2) flat in vec4 frame_ambient;
 layout(location = frame_location + 3) flat in vec4 frame_size;
-layout(location = frame_location + 4) flat in uvec4 frame_options;
+layout(location = frame_location + 4) flat in vec4 frame_pixel;
 FrameData passed_frame =
     FrameData(frame.clip_from_world, frame.world_from_clip, frame_camera_position, frame_camera_direction,
-              frame_ambient, frame.background_low, frame.background_high, frame_size, frame.window, frame_options);
+              frame_ambient, frame.background_low, frame.background_high, frame_size, frame.window, frame_pixel);
 #define frame passed_frame
 #endif
 

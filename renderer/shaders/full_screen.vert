@@ -11,14 +11,14 @@ layout(location = frame_location) flat out vec4 frame_camera_position;
 layout(location = frame_location + 1) flat out vec4 frame_camera_direction;
 layout(location = frame_location + 2) flat out vec4 frame_ambient;
 layout(location = frame_location + 3) flat out vec4 frame_size;
-layout(location = frame_location + 4) flat out uvec4 frame_options;
+layout(location = frame_location + 4) flat out vec4 frame_pixel;
 
 void pass_frame() {
   frame_camera_position = frame.camera_position;
   frame_camera_direction = frame.camera_direction;
   frame_ambient = frame.ambient;
   frame_size = frame.size;
-  frame_options = frame.options;
+  frame_pixel = frame.pixel;
 }
 
 #ifdef PASSES_LIGHT

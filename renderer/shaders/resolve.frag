@@ -2,12 +2,13 @@
 // (FROM_LINEAR), the sky (SKY), surfaces that no light reaches (UNLIT), or those in the dark (BLACK).
 #include "renderer/shaders/pixel_output.glsl"
 #include "renderer/shaders/geometry_buffer.glsl"
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shaders/unlit.glsl"
 
 #ifdef FROM_LINEAR
 uniform sampler2D linear_picture;
 
-void main() { write_pixel(texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb, 1.0); }
+void main() { write_pixel(texel_of(linear_picture, ivec2(gl_FragCoord.xy)).rgb, 1.0); }
 #elif defined(SKY)
 void main() { write_pixel(sky(ivec2(gl_FragCoord.xy)), frame.size.w); }
 #elif defined(BLACK)
@@ -16,7 +17,7 @@ void main() { write_pixel(vec3(0.0), 1.0); }
 uniform sampler2D geometry_position;
 uniform usampler2D geometry_words;
 
-vec3 unlit(ivec2 texel) { return unlit_surface(texel, unpack_color(texelFetch(geometry_words, texel, 0).z)); }
+vec3 unlit(ivec2 texel) { return unlit_surface(texel, unpack_color(texel_of(geometry_words, texel).z)); }
 
 #ifdef UNLIT
 void main() { write_pixel(unlit(ivec2(gl_FragCoord.xy)), frame.size.w); }
@@ -24,8 +25,8 @@ void main() { write_pixel(unlit(ivec2(gl_FragCoord.xy)), frame.size.w); }
 uniform sampler2D radiance;
 
 vec3 light_of_sample(ivec2 texel) {
-  if (texelFetch(geometry_position, texel, 0).w == 0.0) return sky(texel);
-  return unlit(texel) + texelFetch(radiance, texel, 0).rgb;
+  if (texel_of(geometry_position, texel).w == 0.0) return sky(texel);
+  return unlit(texel) + texel_of(radiance, texel).rgb;
 }
 
 void main() {

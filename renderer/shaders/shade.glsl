@@ -2,6 +2,7 @@
 // technique's, which defines calculate_shadow. For lights of many points see shade_points.glsl.
 #include "renderer/shaders/shadow_query.glsl"
 #include "renderer/shaders/light_output.glsl"
+#include "renderer/shaders/texel.glsl"
 
 float calculate_shadow(ShadowQuery query);
 
@@ -10,8 +11,8 @@ uniform usampler2D geometry_words;
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  vec4 position = texelFetch(geometry_position, texel, 0);
-  Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
+  vec4 position = texel_of(geometry_position, texel);
+  Surface surface = unpack_surface(position, texel_of(geometry_words, texel));
   Illumination incoming = illuminate(light_center(), surface.position);
   bool judged = is_judged(surface, incoming);
   vec3 radiance = vec3(0.0);

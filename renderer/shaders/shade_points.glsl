@@ -2,6 +2,7 @@
 // technique's, which defines calculate_shadow.
 #include "renderer/shaders/sample_list.glsl"
 #include "renderer/shaders/shadow_query.glsl"
+#include "renderer/shaders/texel.glsl"
 
 float calculate_shadow(ShadowQuery query);
 
@@ -15,9 +16,9 @@ layout(rgba32f) uniform image2DArray scramble_sums;  // by pixel: mean brightnes
 void main() {
   ivec2 texel;
   if (!find_sample(texel)) return;
-  vec4 position = texelFetch(geometry_position, texel, 0);
+  vec4 position = texel_of(geometry_position, texel);
   if (position.w == 0.0) return;
-  Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
+  Surface surface = unpack_surface(position, texel_of(geometry_words, texel));
   vec2 pixel = vec2(texel) + 0.5;
   float seen = 0.0;
 #ifdef SHADE_EACH_POINT

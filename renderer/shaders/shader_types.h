@@ -50,8 +50,9 @@ struct FrameData {
   vec4 background_low;    // rgb linear, horizon
   vec4 background_high;   // rgb linear, zenith
   vec4 size;              // xy samples of the frame, z samples per pixel along a side, w exposure
-  vec4 window;    // samples: xy of the frame's first in the whole picture, zw of all of that
-  uvec4 options;  // x whether the picture is sRGB-encoded
+  vec4 window;  // samples: xy of the frame's first in the whole picture, zw of all of that
+  vec4 pixel;   // xyz world: from a place in view to that of the next sample to the right, at
+                // unit depth where the view has perspective; w 1 for an sRGB-encoded picture
 };
 
 struct LightData {

@@ -2,6 +2,7 @@
 #ifndef PENUMBRA_UNLIT_GLSL
 #define PENUMBRA_UNLIT_GLSL
 #include "renderer/shaders/frame.glsl"
+#include "renderer/shaders/texel.glsl"
 
 #ifdef EMISSIVE
 uniform sampler2D geometry_emitted;
@@ -10,7 +11,7 @@ uniform sampler2D geometry_emitted;
 vec3 unlit_surface(ivec2 texel, vec3 base_color) {
   vec3 radiance = frame.ambient.rgb * base_color;
 #ifdef EMISSIVE
-  radiance += texelFetch(geometry_emitted, texel, 0).rgb;
+  radiance += texel_of(geometry_emitted, texel).rgb;
 #endif
   return radiance;
 }

@@ -284,6 +284,8 @@ void DepthMap::draw_casters(PrepareContext& context, const Views& views,
   }
   if (chosen_strategy(context.input.parameters).surfaces == MapSurfaces::back_faces)
     program.cull = VK_CULL_MODE_FRONT_BIT;
+  program.first_surface_alone =
+      program.state.depth_clamp && keeps_first_surfaces(context.input.parameters);
 
   std::vector<DrawnCasters> drawn;
   context.pass("shadow map", [&](vulkan::Commands& commands) {

@@ -1,6 +1,7 @@
 // Depth computed anew for every fragment where interpolated depth would be wrong inside triangles; otherwise
 // (INTERPOLATED_DEPTH) for holes alone.
 #include "renderer/shaders/caster.glsl"
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/bias/strategies.glsl"
 #include "renderer/shadow_maps/texels/depth_coding.glsl"
 
@@ -32,7 +33,7 @@ void main() {
   // One of two layers; layered_depths.frag makes a map of both.
   gl_FragDepth = clamp(even_depth_of(range, distance), 0.0, 1.0);
 #ifdef SECOND_LAYER
-  float first = texelFetch(first_depths, ivec2(gl_FragCoord.xy), 0).r;
+  float first = texel_of(first_depths, ivec2(gl_FragCoord.xy)).r;
   // Facets that meet in an edge lie at one depth, but for rounding.
   if (gl_FragDepth <= first + 4.0 * rounding_of_depth()) discard;
 #endif

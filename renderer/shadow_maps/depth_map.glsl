@@ -8,6 +8,7 @@
 #ifndef PENUMBRA_DEPTH_MAP_GLSL
 #define PENUMBRA_DEPTH_MAP_GLSL
 #include "renderer/shaders/shadow_query.glsl"
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/bias/strategies.glsl"
 #include "renderer/shadow_maps/texels/depth_coding.glsl"
 
@@ -156,8 +157,7 @@ uniform sampler2DArray shadow_map;
 
 /// Depth that the map holds; texels beyond the border repeat it.
 float fetch_depth(MapPoint point, ivec2 texel) {
-  texel = clamp(texel, ivec2(0), ivec2(int(map.texel.x) - 1));
-  return texelFetch(shadow_map, ivec3(texel, point.view), 0).r;
+  return texel_nearest_to(shadow_map, ivec3(texel, point.view), ivec2(map.texel.x)).r;
 }
 
 /// Middle of what a read of a texel finds.

@@ -1,6 +1,7 @@
 // Counts a side of a volume where the view ray crosses it behind the visible surface: where camera and
 // surface lie on the same side of its plane. The rasteriser's depths would do, but for surfaces that
 // the plane all but touches: there penumbra wedges must decide the same (wedge.frag).
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_volumes/deep_count.glsl"
 #include "renderer/shadow_volumes/light_side.glsl"
 
@@ -10,7 +11,7 @@ layout(location = 1) flat in vec3 edge_end;
 uniform sampler2D geometry_position;
 
 void main() {
-  vec4 surface = texelFetch(geometry_position, ivec2(gl_FragCoord.xy), 0);
+  vec4 surface = texel_of(geometry_position, ivec2(gl_FragCoord.xy));
   EdgePlane plane = plane_of_edge(edge_start, edge_end);
   float camera = frame.camera_position.w > 0.5 ? side_of_plane(plane, frame.camera_position.xyz)
                                                : -dot(plane.normal, frame.camera_direction.xyz);

@@ -1,10 +1,12 @@
 // Reading the count of volumes that a sample of the frame lies in.
 #ifndef PENUMBRA_READ_STENCIL_GLSL
 #define PENUMBRA_READ_STENCIL_GLSL
+#include "renderer/shaders/texel.glsl"
+
 uniform usampler2D volume_count;
 
 // 0 .. 255; what is more reads 255 (deep_counts.h).
-uint count_volumes(vec2 pixel) { return texelFetch(volume_count, ivec2(pixel), 0).r; }
+uint count_volumes(vec2 pixel) { return texel_of(volume_count, ivec2(pixel)).r; }
 
 // 0 .. 127, what is more 127, where the highest bit marks samples in which volumes were counted.
 uint count_masked_volumes(vec2 pixel) { return count_volumes(pixel) & 0x7fu; }

@@ -2,6 +2,7 @@
 // hard volume says whether the light's CENTRE is hidden. From there outwards, whatever lies beyond the
 // edge is hidden where the centre is not, and free where it is: the edge adds or takes away that part
 // of the light (Assarsson and Akenine-Moeller 2003), which a table knows.
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_volumes/light_side.glsl"
 #include "renderer/shadow_volumes/coverage_table.glsl"
 
@@ -37,7 +38,7 @@ float[8] count_beyond(vec2 a, vec2 b, float step) {
 #endif
 
 void main() {
-  vec4 surface = texelFetch(geometry_position, ivec2(gl_FragCoord.xy), 0);
+  vec4 surface = texel_of(geometry_position, ivec2(gl_FragCoord.xy));
   if (surface.w == 0.0) discard;
   LightPlane plane = light_plane(surface.xyz);
   vec3 start = edge_start - surface.xyz;

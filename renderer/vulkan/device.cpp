@@ -258,6 +258,7 @@ void Device::choose_features(const Offered& offered) {
   need(has.independentBlend, "independentBlend");
   need(has.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
   need(has.shaderClipDistance, "shaderClipDistance");
+  need(has.shaderStorageImageWriteWithoutFormat, "shaderStorageImageWriteWithoutFormat");
 
   features.geometryShader = VK_TRUE;
   features.depthClamp = VK_TRUE;
@@ -265,13 +266,13 @@ void Device::choose_features(const Offered& offered) {
   features.independentBlend = VK_TRUE;
   features.fragmentStoresAndAtomics = VK_TRUE;
   features.shaderClipDistance = VK_TRUE;
+  features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
   features.imageCubeArray = has.imageCubeArray;
   features.samplerAnisotropy = has.samplerAnisotropy;
   features.shaderFloat64 = has.shaderFloat64;
   features.shaderInt64 = has.shaderInt64;
   features.occlusionQueryPrecise = has.occlusionQueryPrecise;
   features.shaderStorageImageReadWithoutFormat = has.shaderStorageImageReadWithoutFormat;
-  features.shaderStorageImageWriteWithoutFormat = has.shaderStorageImageWriteWithoutFormat;
   features.fillModeNonSolid = has.fillModeNonSolid;
 }
 

@@ -94,6 +94,9 @@ class Device {
   /// Whether fragment stages read a block's members once for each lane, as Mesa 22.3 compiles them
   /// for processors (emit_load_ubo in lp_bld_nir_soa.c). See ProgramSource::constants_from_vertex.
   bool reads_blocks_by_lane() const { return info.type == "cpu"; }
+  /// Whether texelFetch finds a level of detail for each lane, as Mesa 22.3 compiles it for
+  /// processors (lod_property in lp_bld_sample_soa.c). See renderer/shaders/texel.glsl.
+  bool finds_levels_by_lane() const { return info.type == "cpu"; }
 
   PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
   PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;  ///< null without the extension

@@ -210,7 +210,9 @@ PipelineCache::PipelineCache(Device& device, const ShaderLibrary& library)
 
 std::unique_ptr<Pipeline> PipelineCache::start(const ProgramSource& source) {
   auto made = std::make_unique<Pipeline>();
-  made->program = compile(library_, source);
+  ProgramSource own = source;
+  if (device_.finds_levels_by_lane()) own.preamble = "#define SAMPLES_TEXELS\n" + own.preamble;
+  made->program = compile(library_, own);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto& reflected : made->program.bindings)
     bindings.push_back(
@@ -310,7 +312,7 @@ VkSampler PipelineCache::sampler(Sampling sampling) {
                          sampling == Sampling::linear_mipmapped ||
                          sampling == Sampling::anisotropic;
   info.mipmapMode = mipmapped ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
-  info.maxLod = mipmapped ? VK_LOD_CLAMP_NONE : 0.0f;
+  info.maxLod = VK_LOD_CLAMP_NONE;
   info.addressModeU = info.addressModeV = info.addressModeW =
       sampling == Sampling::linear_repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT
                                           : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;

@@ -1,3 +1,4 @@
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/blurred_map.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/filters/percentage_closer.glsl"
@@ -28,11 +29,11 @@ uniform sampler2DArray farthest_map;
 
 float farthest_depth(MapPoint point) {
   ivec2 first = ivec2(floor(point.texel - 0.5));
-  ivec2 last = textureSize(farthest_map, 0).xy - 1;
+  ivec2 size = textureSize(farthest_map, 0).xy;
   float farthest = 0.0;
   for (int i = 0; i < 4; ++i) {
-    ivec2 texel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), last);
-    farthest = max(farthest, texelFetch(farthest_map, ivec3(texel, point.view), 0).r);
+    ivec2 texel = first + ivec2(i & 1, i >> 1);
+    farthest = max(farthest, texel_nearest_to(farthest_map, ivec3(texel, point.view), size).r);
   }
   return farthest;
 }

@@ -1,5 +1,6 @@
 // What the map says of each sample: lit, in shadow, or that its nearest texels disagree and the sample
 // lies at the silhouette of a shadow (Chan and Durand 2004).
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/depth_map.glsl"
 #include "techniques/hybrid/mask.glsl"
 
@@ -26,10 +27,10 @@ float filter_view(ShadowQuery query, int view) {
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  vec4 position = texelFetch(geometry_position, texel, 0);
+  vec4 position = texel_of(geometry_position, texel);
   out_mask = mask_dark;
   if (position.w == 0.0) return;
-  Surface surface = unpack_surface(position, texelFetch(geometry_words, texel, 0));
+  Surface surface = unpack_surface(position, texel_of(geometry_words, texel));
   Illumination incoming = illuminate(light_center(), surface.position);
   if (incoming.strength <= 0.0 || dot(surface.geometric_normal, incoming.to_light) <= 0.0) return;
 #ifdef COUNT_SAMPLES

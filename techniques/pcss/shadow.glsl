@@ -47,11 +47,19 @@ float texels_of(ExtentOnMap extent, float reach) {
   return reach * max(length(extent.right), length(extent.up));
 }
 
-// Tap i of n over the extent, from -1 to 1: a spiral on the disc, a lattice on the square.
-vec2 extent_tap(ExtentOnMap extent, int i, int n, float rotation) {
-  if (!extent.square) return vogel_tap(i, n, rotation);
-  float shift = rotation / (2.0 * pi);
-  vec2 place = vec2((float(i) + 0.5) / float(n) + shift, float(i) * 0.61803399 + 1.7 * shift);
+// Taps over the extent, from -1 to 1: a spiral on the disc, a lattice on the square.
+struct Taps {
+  float rotation;
+  vec2 direction;  // of the spiral's next
+};
+Taps first_of_taps(float rotation) { return Taps(rotation, direction_of_first_tap(rotation)); }
+Taps next_of_taps(Taps taps) { return Taps(taps.rotation, direction_of_next_tap(taps.direction)); }
+
+// The i-th of n.
+vec2 extent_tap(ExtentOnMap extent, Taps taps, int i, int n) {
+  if (!extent.square) return length_of_tap(i, n) * taps.direction;
+  float shift = taps.rotation * (0.5 / pi);
+  vec2 place = vec2((float(i) + 0.5) * (1.0 / float(n)) + shift, float(i) * 0.61803399 + 1.7 * shift);
   return 2.0 * fract(place) - 1.0;
 }
 
@@ -77,11 +85,12 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
   float sum = 0.0;
   float count = 0.0;
   float nearest = 1e30;
-  for (int i = 0; i < parameter_search_taps; ++i) {
+  Taps taps = first_of_taps(rotation);
+  for (int i = 0; i < parameter_search_taps; ++i, taps = next_of_taps(taps)) {
     // Every other tap is drawn to the middle, by the square of its share of the area: casters close to
     // the receiver may block only there, while others stand at the light and may block everywhere.
-    vec2 tap = extent_tap(extent, i, parameter_search_taps, rotation);
-    float away = extent.square ? max(abs(tap.x), abs(tap.y)) : length(tap);
+    vec2 tap = extent_tap(extent, taps, i, parameter_search_taps);
+    float away = extent.square ? max(abs(tap.x), abs(tap.y)) : length_of_tap(i, parameter_search_taps);
     float drawn = (i & 1) == 1 ? away * away * away : 1.0;
     tap *= drawn;
     away *= drawn;
@@ -90,7 +99,8 @@ float find_blocker(MapPoint point, ExtentOnMap extent, float rotation) {
     if (receiver_depth(point, texel) <= stored) continue;
     float distance = distance_of_depth(point, stored);
     // A tap represents an area: the inverse of the taps' density there.
-    float share = 1.0 / (1.0 + 0.25 * pow(max(away, 1e-4), -1.5));
+    away = max(away, 1e-4);
+    float share = 1.0 / (1.0 + 0.25 * inversesqrt(away * away * away));
     sum += share * distance;
     count += share;
     nearest = min(nearest, distance);
@@ -113,8 +123,9 @@ float risen_share(ShadowQuery query, ExtentOnMap extent, float rotation) {
   vec2 reach = abs(vec2(dot(query.normal, extent.world_right), dot(query.normal, extent.world_up)));
   if (height > reach.x + reach.y) return 1.0;
   float risen = 0.0;
-  for (int i = 0; i < parameter_taps; ++i)
-    risen += is_risen(query, extent, extent_tap(extent, i, parameter_taps, rotation)) ? 1.0 : 0.0;
+  Taps taps = first_of_taps(rotation);
+  for (int i = 0; i < parameter_taps; ++i, taps = next_of_taps(taps))
+    risen += is_risen(query, extent, extent_tap(extent, taps, i, parameter_taps)) ? 1.0 : 0.0;
   return risen / float(parameter_taps);
 }
 
@@ -137,8 +148,9 @@ float filter_view(ShadowQuery query, int view) {
   // blockers it is left.
   point.nearest = 0.5 * (point.distance + blocker);
   float lit = 0.0;
-  for (int i = 0; i < parameter_taps; ++i) {
-    vec2 tap = extent_tap(extent, i, parameter_taps, rotation);
+  Taps taps = first_of_taps(rotation);
+  for (int i = 0; i < parameter_taps; ++i, taps = next_of_taps(taps)) {
+    vec2 tap = extent_tap(extent, taps, i, parameter_taps);
     if (risen < 1.0 && !is_risen(query, extent, tap)) continue;
     lit += compare_texel(point, texel_at(point, extent, tap, size));
   }

@@ -1,3 +1,4 @@
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/chebyshev.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/filters/footprint.glsl"
@@ -27,7 +28,7 @@ vec4 draw_diagnostic_moments(ShadowQuery query, vec2 picture) {
   int size = int(map.texel.x);
   ivec2 texel = ivec2(picture * map.texel.x);
   vec2 center = vec2(texel) + 0.5;
-  float stored = texelFetch(shadow_map, ivec3(texel, 0), 0).r;
+  float stored = texel_of(shadow_map, ivec3(texel, 0)).r;
   return vec4(mean_moments(center, 0, size, 1).x, mean_moments(center, 0, size, parameter_kernel).x,
               stored, 1.0);
 }

@@ -1,3 +1,4 @@
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_volumes/overlap_counts.glsl"
 #include "renderer/shadow_volumes/read_stencil.glsl"
 
@@ -8,7 +9,7 @@ uniform sampler2D second_counts;
 // What the wedges add to the part of the light that is hidden, or take away; 0 for lights that have no
 // extent and so no wedges.
 float wedge_correction(vec2 pixel) {
-  return light_half_size().x > 0.0 ? texelFetch(wedge_coverage, ivec2(pixel), 0).r : 0.0;
+  return light_half_size().x > 0.0 ? texel_of(wedge_coverage, ivec2(pixel)).r : 0.0;
 }
 
 // Mean over points of the light of how often each is counted more than once, given the count of its
@@ -28,8 +29,8 @@ float calculate_shadow(ShadowQuery query) {
   float hidden = center + wedge_correction(query.pixel);
   if (parameter_overlap == overlap_count && light_half_size().x > 0.0) {
     ivec2 texel = ivec2(query.pixel);
-    hidden -= counted_too_often(center, texelFetch(first_counts, texel, 0)) +
-              counted_too_often(center, texelFetch(second_counts, texel, 0));
+    hidden -= counted_too_often(center, texel_of(first_counts, texel)) +
+              counted_too_often(center, texel_of(second_counts, texel));
   }
   return clamp(1.0 - hidden, 0.0, 1.0);
 }

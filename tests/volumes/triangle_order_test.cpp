@@ -74,7 +74,7 @@ std::size_t misses(const std::vector<std::uint32_t>& corners) {
 TEST(TriangleOrder, keeps_every_triangle_its_winding_and_its_primitive) {
   for (const bool with_seam : {false, true}) {
     const Mesh mesh = torn_square(with_seam);
-    const TriangleOrder order = triangle_order(mesh);
+    const TriangleOrder order = triangle_order(mesh, {true, true});
     ASSERT_EQ(order.corners.size(), mesh.indices.size());
     for (const Primitive& primitive : mesh.primitives)
       EXPECT_EQ(triangles(mesh, primitive, order.corners),
@@ -88,9 +88,9 @@ TEST(TriangleOrder, makes_vertices_one_that_are_alike_in_everything) {
   };
   constexpr std::size_t places = (side + 1) * (side + 1);
   const Mesh smooth = torn_square(false);
-  EXPECT_EQ(distinct(triangle_order(smooth).corners), places);
+  EXPECT_EQ(distinct(triangle_order(smooth, {true, true}).corners), places);
   const Mesh seam = torn_square(true);
-  const TriangleOrder order = triangle_order(seam);
+  const TriangleOrder order = triangle_order(seam, {true, true});
   EXPECT_EQ(distinct(order.corners), seam.indices.size()) << "coordinates of textures differ";
   EXPECT_EQ(distinct(order.first_at), places);
   for (std::size_t v = 0; v < seam.positions.size(); ++v)
@@ -100,7 +100,7 @@ TEST(TriangleOrder, makes_vertices_one_that_are_alike_in_everything) {
 TEST(TriangleOrder, brings_neighbours_together) {
   const Mesh mesh = torn_square(false);
   std::vector<std::uint32_t> places;
-  const TriangleOrder order = triangle_order(mesh);
+  const TriangleOrder order = triangle_order(mesh, {true, true});
   for (const std::uint32_t corner : mesh.indices) places.push_back(order.first_at[corner]);
   // A corner a quad, where all are found again; any order asks for most of its six anew.
   EXPECT_GT(misses(places), 3 * side * side);
@@ -109,14 +109,14 @@ TEST(TriangleOrder, brings_neighbours_together) {
 
 TEST(TriangleOrder, bears_meshes_without_triangles) {
   Mesh mesh;
-  EXPECT_TRUE(triangle_order(mesh).corners.empty());
+  EXPECT_TRUE(triangle_order(mesh, {}).corners.empty());
   mesh.positions = {glm::vec3(0.0f)};
   mesh.normals = {glm::vec3(0.0f, 0.0f, 1.0f)};
   mesh.primitives = {{0, 0, 0}};
-  EXPECT_EQ(triangle_order(mesh).first_at.size(), 1u);
+  EXPECT_EQ(triangle_order(mesh, {true}).first_at.size(), 1u);
   Mesh some = torn_square(false);
   some.primitives.push_back({0, 0, 0});
-  EXPECT_EQ(triangle_order(some).corners.size(), some.indices.size());
+  EXPECT_EQ(triangle_order(some, {true, true, true}).corners.size(), some.indices.size());
 }
 
 }  // namespace

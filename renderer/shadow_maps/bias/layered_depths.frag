@@ -1,4 +1,5 @@
 // The map to compare with, from the two surfaces that are nearest to the light.
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/bias/strategies.glsl"
 #include "renderer/shadow_maps/texels/depth_coding.glsl"
 
@@ -17,8 +18,8 @@ float greatest_offset(MapView view, float first) {
 void main() {
   MapView view = map.views[layer.view];
   ivec3 texel = ivec3(gl_FragCoord.xy, layer.view);
-  float first = texelFetch(first_depths, texel, 0).r;
-  float second = texelFetch(second_depths, texel, 0).r;
+  float first = texel_of(first_depths, texel).r;
+  float second = texel_of(second_depths, texel).r;
   float depth = between_surfaces(first, second, greatest_offset(view, first) * view.range.z);
   float bias =
       view.range.w + map.texel.w * rounding_grant(view.range, view.range.x + depth / view.range.z);

@@ -29,6 +29,11 @@ const BiasStrategy& chosen_strategy(const ParameterValues& parameters) {
                        [&](const BiasStrategy& strategy) { return strategy.id == id; });
 }
 
+bool keeps_first_surfaces(const ParameterValues& parameters) {
+  const BiasStrategy& strategy = chosen_strategy(parameters);
+  return strategy.surfaces == MapSurfaces::first && !strategy.moves_facets;
+}
+
 bool knows_two_surfaces(const ParameterValues& parameters) {
   return chosen_strategy(parameters).surfaces == MapSurfaces::first_and_second;
 }

@@ -20,6 +20,9 @@ const std::vector<BiasStrategy>& bias_strategies();
 /// The one that parameter `bias_strategy` names.
 const BiasStrategy& chosen_strategy(const ParameterValues& parameters);
 
+/// Whether the map is made of the surfaces nearest to the light, where they are.
+bool keeps_first_surfaces(const ParameterValues& parameters);
+
 bool knows_two_surfaces(const ParameterValues& parameters);
 
 /// bias_strategy, bias, slope_scale.

@@ -16,11 +16,15 @@ std::vector<Parameter> blur_parameters() {
                         "Weights of that filter. box: equal. gauss: a bell of which two standard "
                         "deviations fit in.")
                      .compiled());
-  list.push_back(boolean(
-      "mips", true, "Read means over more texels where a pixel covers more than the blur does."));
-  list.push_back(boolean(
-      "anisotropic", false,
-      "Read up to 16 means along the direction in which a pixel covers most, instead of one."));
+  list.push_back(
+      boolean("mips", true,
+              "Read means over more texels where a pixel covers more than the blur does.")
+          .compiled());
+  list.push_back(
+      boolean(
+          "anisotropic", false,
+          "Read up to 16 means along the direction in which a pixel covers most, instead of one.")
+          .compiled());
   return list;
 }
 
@@ -47,6 +51,26 @@ Diagnostic mip_level_diagnostic() {
 
 std::string encoding(const std::string& encoder) {
   return "#define ENCODE\n#include \"" + encoder + "\"\n";
+}
+
+std::string blur_definitions(VkFormat format) {
+  const std::string of_float = "#define CHANNELS r\n#define VALUE float\n";
+  const std::string of_vector = "#define CHANNELS rg\n#define VALUE vec2\n";
+  switch (format) {
+    case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_R32_SFLOAT:
+      return of_float;
+    case VK_FORMAT_R16G16_SFLOAT:
+    case VK_FORMAT_R32G32_SFLOAT:
+      return of_vector;
+    default:
+      return "#define CHANNELS rgba\n#define VALUE vec4\n";
+  }
+}
+
+void dispatch_blur(vulkan::Commands& commands, std::uint32_t size) {
+  constexpr std::uint32_t lines = 64, run = 8;  // of a group, as blurred_map.comp has them
+  commands.dispatch((size + lines - 1) / lines, (size + run - 1) / run);
 }
 
 namespace {
@@ -92,7 +116,7 @@ void BlurredMap::create(PrepareContext& context, const DepthMap& depth,
                         const BlurSettings& settings, bool mips) {
   vulkan::ImageDescription description = depth.image().description();
   description.format = settings.format;
-  description.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  description.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   rows_ = vulkan::Image(context.device, context.memory, settings.name + " rows", description);
   description.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   if (mips) description.levels = static_cast<std::uint32_t>(std::bit_width(description.width));
@@ -101,32 +125,21 @@ void BlurredMap::create(PrepareContext& context, const DepthMap& depth,
 
 void BlurredMap::blur(PrepareContext& context, const DepthMap& depth, const BlurSettings& settings,
                       std::uint32_t view) {
+  const std::uint32_t size = image_.description().width;
   const auto run = [&](const std::string& name, const std::string& encoder,
-                       const vulkan::Image& target, const vulkan::Bindings& bindings) {
-    vulkan::ProgramSource source;
-    source.stages = {
-        {VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
-        {VK_SHADER_STAGE_FRAGMENT_BIT, "renderer/shadow_maps/filters/blurred_map.frag"}};
-    source.preamble = context.declarations;
-    source.constants_from_vertex = context.device.reads_blocks_by_lane();
-    if (!encoder.empty()) source.preamble += encoding(encoder);
-    if (settings.filter == MapFilter::logarithmic) source.preamble += "#define FILTER_LOGARITHMS\n";
-    if (settings.filter == MapFilter::maximum) source.preamble += "#define FILTER_MAXIMUM\n";
-    vulkan::GraphicsState state;
-    state.color_formats = {target.description().format};
-    vulkan::RenderTargets targets;
-    targets.width = target.description().width;
-    targets.height = target.description().height;
-    targets.colors = {{target.slice(view), false, {}}};
-    const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
+                       const vulkan::Image& target, vulkan::Bindings bindings) {
+    std::string preamble = context.declarations + blur_definitions(settings.format);
+    if (!encoder.empty()) preamble += encoding(encoder);
+    if (settings.filter == MapFilter::logarithmic) preamble += "#define FILTER_LOGARITHMS\n";
+    if (settings.filter == MapFilter::maximum) preamble += "#define FILTER_MAXIMUM\n";
+    const vulkan::Pipeline& pipeline = context.pipelines.compute(blur_program, preamble);
+    bindings.storage_slice("filtered_map", target, view);
     // An encoder may read parameters that are no constants.
     vulkan::Bindings all = context.frame_bindings;
     all.add(bindings);
     context.pass(name, [&](vulkan::Commands& commands) {
-      commands.begin_rendering(targets);
       commands.bind(pipeline, all);
-      commands.full_screen_triangle();
-      commands.end_rendering();
+      dispatch_blur(commands, size);
     });
   };
   vulkan::Bindings rows;

@@ -1,6 +1,7 @@
 // Reading a map that was filtered beforehand, or filtering texels of a buffer as they are read.
 #ifndef PENUMBRA_BLURRED_MAP_GLSL
 #define PENUMBRA_BLURRED_MAP_GLSL
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/blur_weights.glsl"
 #include "renderer/shadow_maps/diagnostics.glsl"
 #include "renderer/shadow_maps/filters/footprint.glsl"
@@ -134,11 +135,11 @@ float read_logarithms(MapPoint point) {
   vec2 corner = point.texel - 0.5;
   ivec2 first = ivec2(floor(corner));
   vec2 share = corner - vec2(first);
-  ivec2 last = textureSize(blurred_map, 0).xy - 1;
+  ivec2 size = textureSize(blurred_map, 0).xy;
   vec4 values, weights;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
-    values[i] = texelFetch(blurred_map, ivec3(clamp(first + step, ivec2(0), last), point.view), 0).r;
+    values[i] = texel_nearest_to(blurred_map, ivec3(first + step, point.view), size).r;
     weights[i] = (step.x == 1 ? share.x : 1.0 - share.x) * (step.y == 1 ? share.y : 1.0 - share.y);
   }
   float greatest = max(max(values.x, values.y), max(values.z, values.w));

@@ -36,9 +36,17 @@ struct BlurSettings {
   std::string name = "blurred map";  ///< in the memory report
 };
 
-/// What goes before renderer/shadow_maps/filters/blurred_map.frag where it reads depths and encodes
-/// them.
+/// Runs along rows, which reads and encodes a depth map, then along columns.
+inline constexpr const char* blur_program = "renderer/shadow_maps/filters/blurred_map.comp";
+
+/// What goes before it for a map of this format.
+std::string blur_definitions(VkFormat format);
+
+/// What goes before it where it reads depths and encodes them.
 std::string encoding(const std::string& encoder);
+
+/// Runs it over a view of as many texels a side.
+void dispatch_blur(vulkan::Commands& commands, std::uint32_t size);
 
 /// A map of values that may be averaged, made of a depth map and blurred: moments, exponentials.
 /// Same views as the depth map, one layer each, with a mip chain where parameter mips asks for one.

@@ -4,20 +4,16 @@
 #include "renderer/shadow_maps/depth_map.glsl"
 
 /// From the receiver to where the camera's ray through a place of the frame meets the plane through it.
-/// Without differences of positions, which a distant camera or a near plane close to it would spoil.
+/// Without differences of such places, which a distant camera or a near plane close to it would spoil.
 vec3 step_on_plane(ShadowQuery query, vec2 pixels) {
-  vec2 step = 2.0 * pixels / frame.size.xy;
-  vec3 across = (frame.world_from_clip * vec4(step, 0.0, 0.0)).xyz;
-  if (frame.camera_position.w < 0.5) {
-    vec3 along = frame.camera_direction.xyz;
-    return across - along * dot(query.normal, across) / dot(query.normal, along);
-  }
-  // Of clip space, z 0 and w 1 are the ray's direction at unit depth.
-  vec3 along = (frame.world_from_clip * vec4(2.0 * query.pixel / frame.size.xy - 1.0, 0.0, 1.0)).xyz;
-  float facing = dot(query.normal, along);
+  vec3 along = frame.camera_direction.xyz;
+  vec3 right = frame.pixel.xyz;
+  vec3 across = pixels.x * right + pixels.y * cross(along, right);
   float slope = dot(query.normal, across);
-  float depth = dot(query.position - frame.camera_position.xyz, along) / dot(along, along);
-  return depth * (facing * across - slope * along) / (facing + slope);
+  if (frame.camera_position.w < 0.5) return across - along * (slope / dot(query.normal, along));
+  vec3 from_camera = query.position - frame.camera_position.xyz;
+  float height = dot(query.normal, from_camera);
+  return (height * across - slope * from_camera) * (1.0 / (height / dot(along, from_camera) + slope));
 }
 
 vec2 texel_seen_at(ShadowQuery query, int view, vec2 pixels) {

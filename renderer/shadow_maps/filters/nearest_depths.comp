@@ -1,4 +1,5 @@
 // One level of the chain of least depths, from the map (level 0) or the level before.
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/nearest_depths_layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,7 +18,7 @@ void main() {
       if (step.level > 0) {
         nearest = min(nearest, imageLoad(chain, ivec3(finer + level_offset(step.level - 1, step.base), texel.z)).r);
       } else if (all(lessThan(finer, textureSize(shadow_map, 0).xy))) {
-        nearest = min(nearest, texelFetch(shadow_map, ivec3(finer, texel.z), 0).r);
+        nearest = min(nearest, texel_of(shadow_map, ivec3(finer, texel.z)).r);
       }
     }
   }

@@ -1,6 +1,7 @@
 // What may stand before a region of the map, in nine reads.
 #ifndef PENUMBRA_NEAREST_DEPTHS_GLSL
 #define PENUMBRA_NEAREST_DEPTHS_GLSL
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/depth_map.glsl"
 #include "renderer/shadow_maps/filters/nearest_depths_layout.glsl"
 
@@ -23,7 +24,7 @@ float nearest_depth(MapPoint point, float radius) {
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 3; ++x) {
       ivec2 texel = clamp(first + ivec2(x, y), ivec2(0), last) + level_offset(level, base);
-      nearest = min(nearest, texelFetch(nearest_depths, ivec3(texel, point.view), 0).r);
+      nearest = min(nearest, texel_of(nearest_depths, ivec3(texel, point.view)).r);
     }
   return nearest;
 }

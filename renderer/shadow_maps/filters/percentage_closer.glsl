@@ -40,17 +40,21 @@ float tap_rotation(vec2 pixel) {
   return 2.0 * pi * fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));
 }
 
-/// Tap i of n, spread evenly over the unit disc along a sunflower's spiral (Vogel 1979).
-vec2 vogel_tap(int i, int n, float rotation) {
-  float angle = float(i) * 2.39996323 + rotation;
-  return sqrt((float(i) + 0.5) / float(n)) * vec2(cos(angle), sin(angle));
+/// Taps spread evenly over the unit disc along a sunflower's spiral (Vogel 1979): each lies by the golden angle
+/// further around than the one before, and this far from the middle is the i-th of n.
+vec2 direction_of_first_tap(float rotation) { return vec2(cos(rotation), sin(rotation)); }
+vec2 direction_of_next_tap(vec2 direction) {
+  const vec2 golden = vec2(-0.73736887807831985597, 0.67549029426152362720);
+  return vec2(golden.x * direction.x - golden.y * direction.y, golden.y * direction.x + golden.x * direction.y);
 }
+float length_of_tap(int i, int n) { return sqrt((float(i) + 0.5) * (1.0 / float(n))); }
 
 /// Mean over taps within `radius` texels, each compared with the texel that it falls into.
 float mean_of_disc(MapPoint point, float radius, int taps, float rotation) {
   float lit = 0.0;
-  for (int i = 0; i < taps; ++i)
-    lit += compare_texel(point, ivec2(floor(point.texel + radius * vogel_tap(i, taps, rotation))));
+  vec2 direction = direction_of_first_tap(rotation);
+  for (int i = 0; i < taps; ++i, direction = direction_of_next_tap(direction))
+    lit += compare_texel(point, ivec2(floor(point.texel + radius * length_of_tap(i, taps) * direction)));
   return lit / float(taps);
 }
 #endif

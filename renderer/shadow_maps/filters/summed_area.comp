@@ -2,6 +2,7 @@
 // or with COLUMNS along columns. A group works on eight lines at once, each cut into parts: parts are
 // summed, what lies before a part is the sum of the parts before it, then its own values are added one
 // by one.
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/summed_area_types.glsl"
 
 const int lines = 8;
@@ -28,7 +29,7 @@ TableSum value_of(int line, int place, int view) {
 #ifdef COLUMNS
   return summed_area[entry(line, place, view)];
 #else
-  float depth = texelFetch(shadow_map, ivec3(place, line, view), 0).r;
+  float depth = texel_of(shadow_map, ivec3(place, line, view)).r;
   return table_value(vec2(depth, depth * depth), table.size);
 #endif
 }

@@ -1,6 +1,7 @@
 // Adds up how much of the picture each tile matters to, and between which distances from the light
 // what is seen of it lies (Alecu 2014, 3.3 and 3.5).
 #include "renderer/shaders/frame.glsl"
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/texels/float_places.glsl"
 #include "renderer/shadow_maps/texels/tile_sums.glsl"
 
@@ -68,7 +69,7 @@ void main() {
   ivec2 end = min(first + block, textureSize(seen_positions, 0));
   for (int y = first.y; y < end.y; ++y)
     for (int x = first.x; x < end.x; ++x) {
-      vec4 seen = texelFetch(seen_positions, ivec2(x, y), 0);
+      vec4 seen = texel_of(seen_positions, ivec2(x, y));
       if (seen.w != 0.0) add_sample(seen);
     }
   begin_run(-1);

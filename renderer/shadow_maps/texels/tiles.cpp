@@ -272,6 +272,7 @@ std::vector<DrawnCasters> Tiles::draw(PrepareContext& context,
   program.cull_by_spheres = choice_of(parameters, "tile_culling") == "spheres";
   if (chosen_strategy(parameters).surfaces == MapSurfaces::back_faces)
     program.cull = VK_CULL_MODE_FRONT_BIT;
+  program.first_surface_alone = keeps_first_surfaces(parameters);
   std::vector<DrawnCasters> drawn(tiles);
   context.pass("shadow map", [&](vulkan::Commands& commands) {
     // 0 is far: lit.

@@ -1,5 +1,6 @@
 // Bounds of what is seen in each view, along the view's axes.
 #include "renderer/shaders/frame.glsl"
+#include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/texels/float_places.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,7 +33,7 @@ void main() {
     vec3 low = vec3(3.0e38), high = vec3(-3.0e38);
     for (int y = first.y; y < end.y; ++y) {
       for (int x = first.x; x < end.x; ++x) {
-        vec4 position = texelFetch(seen_positions, ivec2(x, y), 0);
+        vec4 position = texel_of(seen_positions, ivec2(x, y));
         float reach = position.w;
         if (reach <= 0.0 || !is_in_view(view, position.xyz)) continue;
         vec3 offset = position.xyz - view.origin.xyz;
