@@ -37,6 +37,7 @@ void main() {
 
 /// One direction. SHARED: a group loads what it reads once.
 constexpr const char* filter_shader = R"(
+#include "renderer/shaders/texel.glsl"
 layout(local_size_x = 16, local_size_y = 16) in;
 uniform sampler2DArray source;
 uniform writeonly image2DArray target;
@@ -49,7 +50,7 @@ float weight(int offset) {
 
 vec2 moments_at(ivec2 texel) {
   texel = clamp(texel, ivec2(0), textureSize(source, 0).xy - 1);
-  vec2 value = texelFetch(source, ivec3(texel, 0), 0).rg;
+  vec2 value = texel_of(source, ivec3(texel, 0)).rg;
 #ifdef COLUMNS
   return value;
 #else

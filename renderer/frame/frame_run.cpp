@@ -151,9 +151,9 @@ vulkan::Bindings FrameRun::frame_bindings() {
   frame.window =
       side * glm::vec4(setup_.window.x, setup_.window.y, request_.width, request_.height);
   const GammaTreatment gamma = gamma_treatment(setup_.parameters);
-  frame.pixel = glm::vec4(
-      glm::dvec3(setup_.matrices.world_from_clip[0]) * (2.0 / static_cast<double>(setup_.width())),
-      gamma.encodes ? 1.0 : 0.0);
+  frame.pixel =
+      glm::vec4(glm::dvec3(m.world_from_clip[0]) * (2.0 / static_cast<double>(setup_.width())),
+                gamma.encodes ? 1.0 : 0.0);
   const auto words = parameter_block(request_.technique->parameters, setup_.parameters);
   vulkan::Bindings bindings;
   bindings.buffer("FrameBlock", state_.constants.push(frame));

@@ -140,20 +140,23 @@ GpuScene::GpuScene(vulkan::Device& device, std::shared_ptr<const Scene> scene,
 }
 
 std::vector<GpuScene::Part> GpuScene::find_parts() {
-  std::vector<Part> parts;
+  // Of the whole scene: an order that followed what the camera sees would let surfaces that
+  // coincide take turns.
   std::map<std::uint32_t, double> largest;  // thing that has a material, m
-  for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
-    if (!used(i)) continue;
-    const Instance& instance = scene_->instances[i];
+  for (const Instance& instance : scene_->instances) {
     const double size = glm::length(instance_bounds(*scene_, instance).size());
-    const Mesh& mesh = scene_->meshes[instance.mesh];
-    for (const Primitive& primitive : mesh.primitives) {
-      const Coverage coverage = coverages_.of(mesh, primitive);
-      if (coverage == Coverage::nothing) continue;
-      parts.push_back({i, &primitive, coverage == Coverage::holes});
+    for (const Primitive& primitive : scene_->meshes[instance.mesh].primitives) {
       double& so_far = largest[primitive.material];
       so_far = std::max(so_far, size);
     }
+  }
+  std::vector<Part> parts;
+  for (std::uint32_t i = 0; i < scene_->instances.size(); ++i) {
+    if (!used(i)) continue;
+    const Mesh& mesh = scene_->meshes[scene_->instances[i].mesh];
+    for (const Primitive& primitive : mesh.primitives)
+      if (const Coverage coverage = coverages_.of(mesh, primitive); coverage != Coverage::nothing)
+        parts.push_back({i, &primitive, coverage == Coverage::holes});
   }
   const auto place = [&](const Part& part) {
     return std::pair(largest[part.primitive->material], part.primitive->material);
@@ -211,8 +214,10 @@ const TriangleOrder& GpuScene::order_of(std::uint32_t mesh) {
 
 void GpuScene::add_range(const Part& part) {
   const Instance& instance = scene_->instances[part.instance];
-  const std::vector<std::uint32_t>& corners = order_of(instance.mesh).corners;
+  const TriangleOrder& order = order_of(instance.mesh);
   const Primitive& primitive = *part.primitive;
+  const auto own =
+      static_cast<std::size_t>(&primitive - scene_->meshes[instance.mesh].primitives.data());
   DrawRange range;
   range.first_index = static_cast<std::uint32_t>(index_list_.size());
   range.material = primitive.material;
@@ -228,7 +233,7 @@ void GpuScene::add_range(const Part& part) {
     const std::uint32_t corner = i % 3;
     const std::uint32_t turned = mirrored && corner != 0 ? i - corner + 3 - corner : i;
     const std::uint32_t index =
-        first_vertex_[part.instance] + corners[primitive.first_index + turned];
+        first_vertex_[part.instance] + order.corners[order.first[own] + turned];
     index_list_.push_back(index);
     const auto* surfaces = reinterpret_cast<const SurfaceVertex*>(surface_list_.data());
     range.colored = range.colored || surfaces[index].color != white;
@@ -239,9 +244,7 @@ void GpuScene::add_range(const Part& part) {
   if (is_far() && !range.masked)
     split_long_triangles(range.first_index, part.instance);
   else
-    range.closed_count = order_of(instance.mesh)
-                             .closed[static_cast<std::size_t>(
-                                 &primitive - scene_->meshes[instance.mesh].primitives.data())];
+    range.closed_count = order.closed[own];
   range.index_count = static_cast<std::uint32_t>(index_list_.size()) - range.first_index;
   ranges_.push_back(range);
 }
@@ -282,6 +285,10 @@ void GpuScene::flatten() {
   add_vertices();
   for (const Part& part : find_parts())
     if (part.primitive->index_count > 0) add_range(part);
+  // Bodies may have several materials.
+  std::map<std::uint32_t, Bounds> bodies;
+  for (const DrawRange& range : ranges_) bodies[range.instance].add(range.box());
+  for (DrawRange& range : ranges_) range.body = bodies[range.instance];
 }
 
 std::vector<std::uint32_t> GpuScene::add_facets(std::vector<glm::vec3>& positions) {

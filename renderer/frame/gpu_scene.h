@@ -28,6 +28,7 @@ struct DrawRange {
   glm::vec3 low{0.0f};  ///< box, world
   glm::vec3 high{0.0f};
   Bounds box() const { return {low, high}; }
+  Bounds body;               ///< around all ranges of the instance, world
   bool visible = true;       ///< as the plan has it
   bool casts_shadow = true;  ///< as the plan has it
   bool double_sided = false;

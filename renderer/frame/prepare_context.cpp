@@ -28,6 +28,13 @@ void add_draw(std::vector<CasterDraw>& draws, const CasterDraw& draw) {
   draws.push_back(draw);
 }
 
+/// By more than places and boxes lose as floats: a light in the plane of a face is not outside.
+Bounds widened(const Bounds& box) {
+  const glm::dvec3 most = glm::max(glm::abs(box.low), glm::abs(box.high));
+  const double margin = 1e-5 * glm::length(box.size()) + 1e-6 * glm::length(most);
+  return {box.low - margin, box.high + margin};
+}
+
 }  // namespace
 
 DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const CasterProgram& program,
@@ -64,8 +71,9 @@ DrawnCasters PrepareContext::draw_casters(vulkan::Commands& commands, const Cast
     ++counted.ranges;
     const VkCullModeFlags cull =
         range.double_sided ? VkCullModeFlags{VK_CULL_MODE_NONE} : program.cull;
-    std::uint32_t closed =
-        program.first_surface_alone && !light.is_within(range.box()) ? range.closed_count : 0;
+    const bool from_outside = !light.is_within(widened(range.body));
+    const std::uint32_t closed =
+        program.first_surface_alone && from_outside ? range.closed_count : 0;
     add_draw(draws, {range, range.first_index, closed, VK_CULL_MODE_BACK_BIT});
     add_draw(draws, {range, range.first_index + closed, range.index_count - closed, cull});
   }

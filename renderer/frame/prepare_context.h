@@ -18,8 +18,8 @@ struct CasterProgram {
   std::string preamble;
   vulkan::GraphicsState state;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< of single-sided materials; others are never culled
-  /// Whether what lies behind a body's first surface is as good as not there: closed bodies are
-  /// drawn without their faces that are turned away from the light.
+  /// Whether only the surface nearest to the light counts. Closed bodies that the light is outside
+  /// of are then drawn without their faces that are turned away from it.
   bool first_surface_alone = false;
   bool shades_holes_alone = false;  ///< materials without are drawn without a fragment stage
   bool all_surfaces = false;        ///< also those that cast no shadow

@@ -107,10 +107,10 @@ std::vector<std::vector<bool>> closed_triangles(const Mesh& mesh, const Indices&
 TriangleOrder triangle_order(const Mesh& mesh, const std::vector<bool>& solid) {
   const std::size_t vertices = mesh.positions.size();
   TriangleOrder order;
-  order.corners = mesh.indices;
   order.first_at.resize(vertices);
   std::iota(order.first_at.begin(), order.first_at.end(), 0u);
   if (mesh.indices.empty()) {
+    order.first.resize(mesh.primitives.size());
     order.closed.resize(mesh.primitives.size());
     return order;
   }
@@ -132,7 +132,7 @@ TriangleOrder triangle_order(const Mesh& mesh, const std::vector<bool>& solid) {
   Numbers numbers(vertices);
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     const std::uint32_t first = mesh.primitives[p].first_index;
-    std::uint32_t* next = order.corners.data() + first;
+    order.first.push_back(order.corners.size());
     for (const bool in_body : {true, false}) {
       Indices starts, own;
       for (std::size_t t = 0; t < closed[p].size(); ++t) {
@@ -143,7 +143,7 @@ TriangleOrder triangle_order(const Mesh& mesh, const std::vector<bool>& solid) {
       }
       if (in_body) order.closed.push_back(static_cast<std::uint32_t>(own.size()));
       for (const std::uint32_t t : neighbours_together(own, numbers))
-        next = std::copy_n(welded.begin() + starts[t], 3, next);
+        for (std::uint32_t k = 0; k < 3; ++k) order.corners.push_back(welded[starts[t] + k]);
     }
   }
   return order;

@@ -73,6 +73,12 @@ struct MaterialData {
   vec4 surface;     // x specular, y shininess, z alpha cutoff (0 for opaque), w 1 if textured
 };
 
+// Filters of maps: neighbouring texels that one invocation filters, lines of a group, and the
+// greatest radius.
+PENUMBRA_CONSTANT int blur_run = 8;
+PENUMBRA_CONSTANT int blur_lines = 64;
+PENUMBRA_CONSTANT int largest_blur = 16;
+
 // Most views of a map: tiles, cascades, or the six faces around a point light.
 PENUMBRA_CONSTANT int max_map_views = 16;
 

@@ -259,6 +259,7 @@ void Device::choose_features(const Offered& offered) {
   need(has.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
   need(has.shaderClipDistance, "shaderClipDistance");
   need(has.shaderStorageImageWriteWithoutFormat, "shaderStorageImageWriteWithoutFormat");
+  need(has.shaderStorageImageExtendedFormats, "shaderStorageImageExtendedFormats");
 
   features.geometryShader = VK_TRUE;
   features.depthClamp = VK_TRUE;
@@ -267,6 +268,7 @@ void Device::choose_features(const Offered& offered) {
   features.fragmentStoresAndAtomics = VK_TRUE;
   features.shaderClipDistance = VK_TRUE;
   features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
+  features.shaderStorageImageExtendedFormats = VK_TRUE;
   features.imageCubeArray = has.imageCubeArray;
   features.samplerAnisotropy = has.samplerAnisotropy;
   features.shaderFloat64 = has.shaderFloat64;

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "renderer/frame/components.h"
+
 namespace penumbra::techniques::occluder_textures {
 namespace {
 
@@ -12,22 +14,6 @@ struct Before {
   bool operator()(const glm::vec3& a, const glm::vec3& b) const {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   }
-};
-
-/// Union-find.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-  }
-  std::size_t root(std::size_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parents_[root(b)] = root(a); }
-
- private:
-  std::vector<std::size_t> parents_;
 };
 
 OrientedBox box_along(const Body& body, const glm::dmat3& axes) {
@@ -201,13 +187,13 @@ std::vector<Body> find_bodies(const GpuScene& scene, const std::set<std::uint32_
   }
   std::vector<Body> bodies;
   for (const auto& [instance, triangles] : casters) {
-    std::map<glm::vec3, std::size_t, Before> first_at;  // the first triangle with this corner
-    Sets sets(triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t)
+    std::map<glm::vec3, std::uint32_t, Before> first_at;  // the first triangle with this corner
+    Components sets(triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
       for (const std::uint32_t corner : triangles[t])
         sets.join(first_at.try_emplace(scene.positions()[corner], t).first->second, t);
-    std::map<std::size_t, std::size_t> place;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+    std::map<std::uint32_t, std::size_t> place;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const auto [entry, fresh] = place.try_emplace(sets.root(t), bodies.size());
       if (fresh) bodies.push_back({instance, {}, false, 0});
       Triangle triangle;

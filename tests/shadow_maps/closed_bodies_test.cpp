@@ -65,16 +65,39 @@ TEST(BodiesInMaps, that_are_open_cast_shadows_with_their_insides) {
   }
 }
 
-TEST(BodiesInMaps, around_the_light_keep_it_in) {
-  Scene scene = box_over_ground();
-  scene.lights = {lamp({0.0, 1.2, 0.0}, 60.0)};
+/// Nothing outside sees the light.
+void expect_kept_in(const Scene& scene) {
   const RenderResult result = draw(scene, "shadow-map", {}, size);
   std::size_t judged = 0;
   for (std::size_t i = 0; i < result.judged.pixels.size(); ++i) {
     judged += result.judged.pixels[i] > 0.0f;
-    EXPECT_EQ(result.judged.pixels[i] * result.visibility.pixels[i], 0.0f) << i;
+    ASSERT_EQ(result.judged.pixels[i] * result.visibility.pixels[i], 0.0f) << i;
   }
   EXPECT_GT(judged, 100u);
+}
+
+TEST(BodiesInMaps, around_the_light_keep_it_in) {
+  Scene scene = box_over_ground();
+  scene.lights = {lamp({0.0, 1.2, 0.0}, 60.0)};
+  expect_kept_in(scene);
+  // The side below the light is a material of its own: none is a body alone.
+  scene.materials.push_back(scene.materials[0]);
+  Mesh& box = scene.meshes.back();
+  box.primitives = {{0, 12, 0}, {12, 6, 1}, {18, 18, 0}};
+  expect_kept_in(scene);
+}
+
+TEST(BodiesInMaps, cast_shadows_of_lights_in_the_plane_of_a_face) {
+  // As floats the upper side lies at 2.5999999.
+  Scene scene = empty_scene(20.0, 12.0);
+  add_plate(scene, {-6, -6}, {6, 6}, 0.0);
+  add_box(scene, {-1.0, 1.0, -1.0}, {1.0, 2.6, 1.0});
+  scene.lights = {lamp({0.3, 2.6, 0.2}, 60.0)};
+  const RenderResult result = draw(scene, "shadow-map", {}, size);
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < result.judged.pixels.size(); ++i)
+    dark += result.judged.pixels[i] > 0.0f && result.visibility.pixels[i] == 0.0f;
+  EXPECT_GT(dark, 1000u) << "the underside hides the light from the ground";
 }
 
 }  // namespace closed_bodies_test

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "renderer/frame/triangle_order.h"
 #include "renderer/scene/scene.h"
@@ -64,6 +65,20 @@ TEST(ClosedBodies, are_told_body_by_body) {
   EXPECT_THAT(all.closed(), ElementsAreArray(expected));
 }
 
+TEST(ClosedBodies, that_touch_at_a_place_are_told_apart) {
+  // A room wound inwards at the corner of a larger body, and joined to it by what covers nothing.
+  Skin all = unit_box(glm::vec3(0.0f));
+  for (glm::vec3& place : all.positions) place *= 4.0f;
+  Skin room = unit_box(glm::vec3(4.0f));
+  room.turn();
+  all.append(room);
+  for (std::uint32_t& corner : all.corners)
+    if (corner == 8) corner = 7;
+  for (const std::uint32_t corner : {0u, 0u, 9u}) all.corners.push_back(corner);
+  const std::vector<bool> closed = all.closed();
+  for (std::size_t t = 0; t < 24; ++t) EXPECT_EQ(closed[t], t < 12) << t;
+}
+
 TEST(ClosedBodies, are_none_where_one_face_is_wound_the_other_way_or_there_twice) {
   Skin body = unit_box(glm::vec3(0.0f));
   std::swap(body.corners[1], body.corners[2]);
@@ -76,7 +91,8 @@ TEST(ClosedBodies, are_none_where_one_face_is_wound_the_other_way_or_there_twice
 TEST(ClosedBodies, may_have_triangles_that_cover_nothing) {
   Skin body = unit_box(glm::vec3(0.0f));
   for (const std::uint32_t corner : {0u, 0u, 1u}) body.corners.push_back(corner);
-  EXPECT_THAT(body.closed(), Each(true));
+  const std::vector<bool> closed = body.closed();
+  EXPECT_THAT(std::vector<bool>(closed.begin(), closed.begin() + 12), Each(true));
 }
 
 TEST(ClosedBodies, of_many_triangles_around_one_place_take_no_time) {
@@ -127,6 +143,31 @@ TEST(TriangleOrder, closes_bodies_of_several_primitives_where_all_are_solid) {
   const Mesh mesh = mesh_of({upper, lower, unit_box(glm::vec3(5.0f))});
   EXPECT_THAT(triangle_order(mesh, {true, true, true}).closed, ElementsAreArray({18u, 18u, 36u}));
   EXPECT_THAT(triangle_order(mesh, {true, false, true}).closed, ElementsAreArray({0u, 0u, 36u}));
+}
+
+TEST(TriangleOrder, bears_primitives_that_share_triangles) {
+  Skin all = unit_box(glm::vec3(0.0f));
+  Mesh mesh = mesh_of({all});
+  mesh.primitives.push_back({6, 12, 0});
+  const TriangleOrder order = triangle_order(mesh, {true, false});
+  EXPECT_THAT(order.closed, ElementsAreArray({36u, 0u}));
+  EXPECT_THAT(order.first, ElementsAreArray({std::size_t{0}, std::size_t{36}}));
+  EXPECT_EQ(order.corners.size(), 48u);
+  const auto triangle_set = [&](std::size_t first, std::size_t count) {
+    std::multiset<std::array<std::uint32_t, 3>> found;
+    for (std::size_t i = first; i < first + count; i += 3)
+      found.insert({order.corners[i], order.corners[i + 1], order.corners[i + 2]});
+    return found;
+  };
+  std::multiset<std::array<std::uint32_t, 3>> given, part;
+  for (std::size_t i = 0; i < 36; i += 3) {
+    const std::array<std::uint32_t, 3> one{mesh.indices[i], mesh.indices[i + 1],
+                                           mesh.indices[i + 2]};
+    given.insert(one);
+    if (i >= 6 && i < 18) part.insert(one);
+  }
+  EXPECT_EQ(triangle_set(0, 36), given);
+  EXPECT_EQ(triangle_set(36, 12), part);
 }
 
 }  // namespace

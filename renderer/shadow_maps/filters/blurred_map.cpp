@@ -8,7 +8,7 @@ namespace penumbra::shadow_maps {
 std::vector<Parameter> blur_parameters() {
   std::vector<Parameter> list;
   list.push_back(
-      integer("blur", 2, {0, 16},
+      integer("blur", 2, {0, shader::largest_blur},
               "Radius of the filter that is run over the map; it reads 2 blur + 1 texels a side.")
           .in("texels")
           .compiled());
@@ -69,7 +69,8 @@ std::string blur_definitions(VkFormat format) {
 }
 
 void dispatch_blur(vulkan::Commands& commands, std::uint32_t size) {
-  constexpr std::uint32_t lines = 64, run = 8;  // of a group, as blurred_map.comp has them
+  static_assert(shader::blur_run == 8 && shader::largest_blur == 16, "as blurred_map.comp counts");
+  constexpr std::uint32_t lines = shader::blur_lines, run = shader::blur_run;
   commands.dispatch((size + lines - 1) / lines, (size + run - 1) / run);
 }
 

@@ -3,8 +3,8 @@
 #define PENUMBRA_MAP_FOOTPRINT_GLSL
 #include "renderer/shadow_maps/depth_map.glsl"
 
-/// From the receiver to where the camera's ray through a place of the frame meets the plane through it.
-/// Without differences of such places, which a distant camera or a near plane close to it would spoil.
+/// From the receiver to where the camera's ray, so many pixels further, meets the plane through it. Not the
+/// difference of two such places, which a distant camera or a near plane close to it would spoil.
 vec3 step_on_plane(ShadowQuery query, vec2 pixels) {
   vec3 along = frame.camera_direction.xyz;
   vec3 right = frame.pixel.xyz;

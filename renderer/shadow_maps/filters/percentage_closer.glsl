@@ -41,12 +41,13 @@ float tap_rotation(vec2 pixel) {
 }
 
 /// Taps spread evenly over the unit disc along a sunflower's spiral (Vogel 1979): each lies by the golden angle
-/// further around than the one before, and this far from the middle is the i-th of n.
+/// further around than the one before.
 vec2 direction_of_first_tap(float rotation) { return vec2(cos(rotation), sin(rotation)); }
 vec2 direction_of_next_tap(vec2 direction) {
   const vec2 golden = vec2(-0.73736887807831985597, 0.67549029426152362720);
   return vec2(golden.x * direction.x - golden.y * direction.y, golden.y * direction.x + golden.x * direction.y);
 }
+/// How far the i-th of n lies from the middle.
 float length_of_tap(int i, int n) { return sqrt((float(i) + 0.5) * (1.0 / float(n))); }
 
 /// Mean over taps within `radius` texels, each compared with the texel that it falls into.
