@@ -26,6 +26,7 @@ struct SideTo {
   friend bool operator<(const SideTo& a, const SideTo& b) { return a.end < b.end; }
 };
 
+/// Sides of all triangles, found by their two ends.
 class Sides {
  public:
   Sides(std::size_t places, std::span<const std::uint32_t> corners)
