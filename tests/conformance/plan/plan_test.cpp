@@ -219,6 +219,31 @@ Scene floor_above_a_distant_thing() {
   return scene;
 }
 
+TEST(Plan, leaves_the_order_of_surfaces_that_coincide) {
+  // Of two boxes at one place the first that is drawn is seen. One shares its material with a large
+  // thing beside the picture, and materials come in the order of the largest things.
+  Scene scene = test::open_ground();
+  const auto add = [&](const glm::vec3& color, const glm::dvec3& low, const glm::dvec3& high) {
+    test::add_box(scene, low, high);
+    scene.materials.emplace_back();
+    scene.materials.back().base_color = color;
+    scene.meshes.back().primitives[0].material =
+        static_cast<std::uint32_t>(scene.materials.size() - 1);
+  };
+  add({1, 0, 0}, {-0.5, 0.1, -0.5}, {0.5, 0.3, 0.5});
+  add({0, 0, 1}, {-0.5, 0.1, -0.5}, {0.5, 0.3, 0.5});
+  test::add_box(scene, {50, -10, 50}, {90, 0, 90});
+  scene.meshes.back().primitives[0].material =
+      static_cast<std::uint32_t>(scene.materials.size() - 2);
+  RenderRequest request = request_of(scene, "none");
+  EXPECT_FALSE(plan_of(request).instances.back().visible);
+  const RenderResult planned = test::renderer().render(request);
+  request.rules = without_rules();
+  const RenderResult whole = test::renderer().render(request);
+  EXPECT_EQ(planned.picture.pixels, whole.picture.pixels);
+  EXPECT_GT(whole.picture.at(24, 24, 2), whole.picture.at(24, 24, 0)) << "the blue one is seen";
+}
+
 double false_and_missing(const RenderResult& result, const RenderResult& truth) {
   const auto error = tests::visibility_error(result.visibility, truth.visibility, result.judged);
   return error.false_shadow + error.missing_shadow;
