@@ -7,8 +7,8 @@
 
 // Unit.
 vec3 direction_to_viewer(vec3 position) {
-  return frame.camera_position.w > 0.5 ? normalize(frame.camera_position.xyz - position)
-                                       : -frame.camera_direction.xyz;
+  bool has_perspective = frame.camera_position.w > 0.5;
+  return mix(-frame.camera_direction.xyz, normalize(frame.camera_position.xyz - position), bvec3(has_perspective));
 }
 
 // Share of white light from `to_light` that goes to the viewer: x by the base colour, y by the

@@ -24,7 +24,8 @@ void main() {
   gl_Position = vec4((clip + 1.0) * view.texels.x / float(largest_tile) - 1.0, 0.0, 1.0);
   // One that shows nothing is left out.
   vec4 inside = vec4(1.0 + clip, 1.0 - clip);
-  for (int side = 0; side < 4; ++side) gl_ClipDistance[side] = view.choice.x > 0.0 ? inside[side] : -1.0;
+  inside = mix(vec4(-1.0), inside, bvec4(view.choice.x > 0.0));
+  for (int side = 0; side < 4; ++side) gl_ClipDistance[side] = inside[side];
 #else
   gl_Position = view.clip_from_world * vec4(position, 1.0);
 #endif

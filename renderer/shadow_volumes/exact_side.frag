@@ -13,8 +13,9 @@ uniform sampler2D geometry_position;
 void main() {
   vec4 surface = texel_of(geometry_position, ivec2(gl_FragCoord.xy));
   EdgePlane plane = plane_of_edge(edge_start, edge_end);
-  float camera = frame.camera_position.w > 0.5 ? side_of_plane(plane, frame.camera_position.xyz)
-                                               : -dot(plane.normal, frame.camera_direction.xyz);
+  bool has_perspective = frame.camera_position.w > 0.5;
+  float camera = mix(-dot(plane.normal, frame.camera_direction.xyz),
+                     side_of_plane(plane, frame.camera_position.xyz), has_perspective);
   if (surface.w == 0.0 || (side_of_plane(plane, surface.xyz) < 0.0) != (camera < 0.0)) discard;
   count_step();
 }

@@ -36,7 +36,7 @@ void emit_quad(vec4 a, vec4 b, vec4 c, vec4 d) {
 void emit_screen() {
   const vec2 corners[4] = vec2[4](vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1));
   for (int i = 0; i < 4; ++i) {
-    gl_Position = vec4(corners[i].x, inside ? corners[i].y : -corners[i].y, 0.9999, 1.0);
+    gl_Position = vec4(corners[i].x, mix(-1.0, 1.0, inside) * corners[i].y, 0.9999, 1.0);
     edge_start = edge[0];
     edge_end = edge[1];
     EmitVertex();
@@ -54,8 +54,7 @@ vec4 far_end(vec3 from, vec3 along, bool clamped) {
     float left = volume.end_plane.w - dot(from - light_origin(), volume.end_plane.xyz);
     return vec4(from + along * max(left / dot(along, volume.end_plane.xyz), 0.0), 1.0);
   }
-  if (frame.camera_position.w > 0.5) return vec4(along, 0.0);
-  return vec4(from + along * (volume.reach / length(along)), 1.0);
+  return endless_shadow(from, along, length(along));
 }
 
 void emit_wedge(vec3 start, vec3 end) {
@@ -76,24 +75,24 @@ void emit_wedge(vec3 start, vec3 end) {
   t = normalize(t);
   vec3 s = cross(t, g);
 
-  inside = frame.camera_position.w < 0.5;
+  bool is_parallel = frame.camera_position.w < 0.5;
+  inside = is_parallel;
   float across, outwards;
   if (!tangents_past_edge(height, half_length, across, outwards)) {
     emit_screen();
     return;
   }
-  if (!inside) {
-    vec3 camera = frame.camera_position.xyz - middle;
-    float depth = dot(camera, g);
-    float margin = near_reach();
-    inside = depth > -margin &&
-             abs(dot(camera, s)) < across * depth + margin * sqrt(1.0 + across * across) &&
-             abs(dot(camera, t)) < half_length + outwards * depth + margin * sqrt(1.0 + outwards * outwards);
-  }
+  vec3 camera = frame.camera_position.xyz - middle;
+  float depth = dot(camera, g);
+  float margin = near_reach();
+  bool is_near = depth > -margin &&
+                 abs(dot(camera, s)) < across * depth + margin * sqrt(1.0 + across * across) &&
+                 abs(dot(camera, t)) < half_length + outwards * depth + margin * sqrt(1.0 + outwards * outwards);
+  inside = is_near || is_parallel;
 
   vec3 along[4] = vec3[4](g - across * s - outwards * t, g + across * s - outwards * t,
                           g - across * s + outwards * t, g + across * s + outwards * t);
-  bool clamped = volume.end_plane.xyz != vec3(0.0);
+  bool clamped = has_end_plane();
   for (int i = 0; i < 4; ++i)
     clamped = clamped && dot(along[i], volume.end_plane.xyz) > 0.05 * length(along[i]);
   vec4 a_low = far_end(a, along[0], clamped);

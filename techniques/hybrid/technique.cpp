@@ -65,13 +65,15 @@ class Hybrid : public Technique {
     vulkan::ProgramSource source;
     source.stages = {{VK_SHADER_STAGE_VERTEX_BIT, "renderer/shaders/full_screen.vert"},
                      {VK_SHADER_STAGE_FRAGMENT_BIT, "techniques/hybrid/mask.frag"}};
-    source.preamble = context.declarations;
+    source.preamble = context.declarations + "#define PASSES_LIGHT\n";
+    source.constants_from_vertex = context.device.reads_blocks_by_lane();
     if (context.frame_index == 0) source.preamble += "#define COUNT_SAMPLES\n";
+    vulkan::Bindings bindings = context.frame_bindings;
+    map_.bind(bindings);
+    if (bindings.entries().contains("MapBlock")) source.preamble += "#define PASSES_MAP\n";
     vulkan::GraphicsState state;
     state.color_formats = {mask_format};
     const vulkan::Pipeline& pipeline = context.pipelines.graphics(source, state);
-    vulkan::Bindings bindings = context.frame_bindings;
-    map_.bind(bindings);
     bindings.buffer("SampleCountBlock", counts_.whole());
     vulkan::RenderTargets targets = targets_of(context);
     targets.colors = {{mask_.slice(0), false, {}}};

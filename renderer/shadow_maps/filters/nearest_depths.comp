@@ -1,4 +1,4 @@
-// One level of the chain of least depths, from the map (level 0) or the level before.
+// One level of the chain of least depths: FROM_MAP the first, otherwise from the level before.
 #include "renderer/shaders/texel.glsl"
 #include "renderer/shadow_maps/filters/nearest_depths_layout.glsl"
 
@@ -15,11 +15,12 @@ void main() {
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 2; ++x) {
       ivec2 finer = 2 * texel.xy + ivec2(x, y);
-      if (step.level > 0) {
-        nearest = min(nearest, imageLoad(chain, ivec3(finer + level_offset(step.level - 1, step.base), texel.z)).r);
-      } else if (all(lessThan(finer, textureSize(shadow_map, 0).xy))) {
+#ifdef FROM_MAP
+      if (all(lessThan(finer, textureSize(shadow_map, 0).xy)))
         nearest = min(nearest, texel_of(shadow_map, ivec3(finer, texel.z)).r);
-      }
+#else
+      nearest = min(nearest, imageLoad(chain, ivec3(finer + level_offset(step.level - 1, step.base), texel.z)).r);
+#endif
     }
   }
   imageStore(chain, ivec3(texel.xy + level_offset(step.level, step.base), texel.z), vec4(nearest));

@@ -36,18 +36,19 @@ void NearestDepths::draw(PrepareContext& context, const DepthMap& depth) {
     description.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     image_ = vulkan::Image(context.device, context.memory, "nearest depths", description);
   }
-  const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/shadow_maps/filters/nearest_depths.comp");
+  const char* path = "renderer/shadow_maps/filters/nearest_depths.comp";
+  const vulkan::Pipeline& from_map = context.pipelines.compute(path, "#define FROM_MAP\n");
+  const vulkan::Pipeline& from_level = context.pipelines.compute(path);
   vulkan::Bindings bindings;
   bindings.texture("shadow_map", depth.image(), vulkan::Sampling::nearest);
   bindings.storage_image("chain", image_);
   context.pass("nearest depths", [&](vulkan::Commands& commands) {
-    commands.bind(pipeline, bindings);
     for (std::uint32_t level = 0; base >> level > 0; ++level) {
       struct {
         std::int32_t level, base;
       } const step{static_cast<std::int32_t>(level), static_cast<std::int32_t>(base)};
       const std::uint32_t groups = ((base >> level) + 7) / 8;
+      commands.bind(level == 0 ? from_map : from_level, bindings);
       commands.constants(step);
       commands.dispatch(groups, groups, map.layers);
       commands.barrier();

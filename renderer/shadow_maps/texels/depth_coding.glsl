@@ -12,7 +12,7 @@ float from_light(MapView view, float distance) { return view.right.w + distance;
 
 /// World size of a texel of an unwarped view at this distance along its axis, m.
 float texel_size(MapView view, float distance) {
-  return view.forward.w * (view.origin.w > 0.5 ? from_light(view, distance) : 1.0);
+  return view.forward.w * mix(1.0, from_light(view, distance), view.origin.w > 0.5);
 }
 
 /// How a view spreads its texels around a place. A step d, in texels, is a step of texels * d /
@@ -50,20 +50,17 @@ float widest_texel(Spread spread) {
 bool is_divided() { return map_view(0).origin.w > 0.5; }
 
 float coded_depth(vec4 range, float depth) {
-  if (!is_divided()) return depth;
-  depth = clamp(depth, 0.0, 1.0);
-  return depth * range.y / (range.x + depth / range.z);
+  float within = clamp(depth, 0.0, 1.0);
+  return mix(depth, within * range.y / (range.x + within / range.z), is_divided());
 }
 
 float even_depth(vec4 range, float coded) {
-  if (!is_divided()) return coded;
-  return coded * range.x / (range.y - coded / range.z);
+  return mix(coded, coded * range.x / (range.y - coded / range.z), is_divided());
 }
 
 /// Change of distance for a change of what is kept, m, at this distance along the axis.
 float coding_slope(vec4 range, float distance) {
-  if (!is_divided()) return 1.0 / range.z;
-  return distance * distance / (range.x * range.y * range.z);
+  return mix(1.0 / range.z, distance * distance / (range.x * range.y * range.z), is_divided());
 }
 #else
 float coded_depth(vec4 range, float depth) { return depth; }
@@ -114,7 +111,8 @@ float clip_depth(vec4 range, float distance, float w, float slope_scale) {
   float depth = even_depth_of(range, distance) * w;
 #ifdef variant_depth_hyperbolic
   // Even in 1/z. Behind the light, where nothing is drawn, no division by what may be 0.
-  if (is_divided()) depth *= range.y / (distance > 0.5 * range.x ? distance : w);
+  float divisor = distance > 0.5 * range.x ? distance : w;
+  depth *= mix(1.0, range.y / divisor, is_divided());
 #endif
   float granted = granted_units() > 0.0 ? granted_units() : slope_scale * coded_rounding();
   return depth + granted * w;

@@ -11,12 +11,11 @@ layout(std430) buffer SeenBoundsBlock { uint found[]; };  // three least, three 
 layout(push_constant) uniform ChoiceBlock { uint by_depth; } choice;
 
 bool is_in_view(MapView view, vec3 position) {
-  if (choice.by_depth != 0u) {
-    float depth = dot(position - frame.camera_position.xyz, frame.camera_direction.xyz);
-    return depth >= view.choice.x && depth <= view.choice.y;
-  }
+  float depth = dot(position - frame.camera_position.xyz, frame.camera_direction.xyz);
+  bool is_between = depth >= view.choice.x && depth <= view.choice.y;
   vec4 clip = view.clip_from_world * vec4(position, 1.0);
-  return clip.w > 0.0 && all(lessThanEqual(abs(clip.xy), vec2(clip.w)));
+  bool is_inside = clip.w > 0.0 && all(lessThanEqual(abs(clip.xy), vec2(clip.w)));
+  return mix(is_inside, is_between, choice.by_depth != 0u);
 }
 
 // Samples along a side of the square that an invocation goes through: its own minima come first, since
@@ -27,25 +26,24 @@ void main() {
   ivec2 first = block * ivec2(gl_GlobalInvocationID.xy);
   ivec2 end = min(first + block, textureSize(seen_positions, 0));
   if (any(greaterThanEqual(first, end))) return;
-  for (int i = 0; i < int(map.texel.z); ++i) {
-    MapView view = map.views[i];
-    vec3 right = normalize(view.right.xyz), up = normalize(view.up.xyz);
-    vec3 low = vec3(3.0e38), high = vec3(-3.0e38);
-    for (int y = first.y; y < end.y; ++y) {
-      for (int x = first.x; x < end.x; ++x) {
-        vec4 position = texel_of(seen_positions, ivec2(x, y));
-        float reach = position.w;
-        if (reach <= 0.0 || !is_in_view(view, position.xyz)) continue;
-        vec3 offset = position.xyz - view.origin.xyz;
-        vec3 along = vec3(dot(offset, right), dot(offset, up), dot(offset, view.forward.xyz));
-        low = min(low, along - reach);
-        high = max(high, along + reach);
-      }
+  uint i = gl_GlobalInvocationID.z;
+  MapView view = map.views[i];
+  vec3 right = normalize(view.right.xyz), up = normalize(view.up.xyz);
+  vec3 low = vec3(3.0e38), high = vec3(-3.0e38);
+  for (int y = first.y; y < end.y; ++y) {
+    for (int x = first.x; x < end.x; ++x) {
+      vec4 position = texel_of(seen_positions, ivec2(x, y));
+      float reach = position.w;
+      if (reach <= 0.0 || !is_in_view(view, position.xyz)) continue;
+      vec3 offset = position.xyz - view.origin.xyz;
+      vec3 along = vec3(dot(offset, right), dot(offset, up), dot(offset, view.forward.xyz));
+      low = min(low, along - reach);
+      high = max(high, along + reach);
     }
-    if (low.x > high.x) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      atomicMin(found[6 * i + axis], place_of(low[axis]));
-      atomicMax(found[6 * i + 3 + axis], place_of(high[axis]));
-    }
+  }
+  if (low.x > high.x) return;
+  for (uint axis = 0u; axis < 3u; ++axis) {
+    atomicMin(found[6u * i + axis], place_of(low[axis]));
+    atomicMax(found[6u * i + 3u + axis], place_of(high[axis]));
   }
 }

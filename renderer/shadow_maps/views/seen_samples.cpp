@@ -112,7 +112,8 @@ std::vector<Bounds> SeenSamples::bounds(PrepareContext& context,
     commands.bind(pipeline, bindings);
     commands.constants(by_depth ? 1u : 0u);
     // Groups of 8 x 8 invocations, each of which goes through a block of 8 x 8 samples.
-    commands.dispatch((grid.width + 63) / 64, (grid.height + 63) / 64);
+    commands.dispatch((grid.width + 63) / 64, (grid.height + 63) / 64,
+                      static_cast<std::uint32_t>(views.size()));
   });
   context.recorder.flush();
 

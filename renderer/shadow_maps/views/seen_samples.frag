@@ -12,8 +12,7 @@ void main() {
   vec3 normal = cross(right, down);
   cut_holes();
   bool has_eye = frame.camera_position.w > 0.5;
-  vec3 to_camera =
-      has_eye ? frame.camera_position.xyz - world_position : -frame.camera_direction.xyz;
+  vec3 to_camera = mix(-frame.camera_direction.xyz, frame.camera_position.xyz - world_position, bvec3(has_eye));
   if (dot(normal, to_camera) < 0.0) normal = -normal;
   vec3 to_light = vector_to_light(world_position);
   // Normals of shading lean by a few degrees from those of facets.
