@@ -92,27 +92,18 @@ void LightPass::draw(const Frame& frame, const std::function<void(double)>& afte
     bindings.buffer("LightBlock", frame.constants.push(light_data(
                                       light_, static_cast<float>(batch.count), batch.weight)));
     bindings.buffer("LightPointBlock", frame.constants.push_array(points.first(batch_size)));
-    PrepareContext context{input_,
-                           setup_.scene,
-                           light_,
-                           fit_,
-                           setup_.matrices,
-                           setup_.picture_matrices,
-                           frame.geometry,
-                           frame.device,
-                           frame.pipelines,
-                           ledger_,
-                           frame.constants,
-                           frame.recorder,
-                           bindings,
-                           declarations_,
-                           points,
-                           batch.count,
-                           index,
-                           batches,
-                           frame.frame_index,
-                           frame.notes,
-                           needs_.adjacency ? &setup_.scene.adjacency(frame.device) : nullptr};
+    PrepareContext context{
+        input_,          setup_.scene,
+        light_,          fit_,
+        setup_.matrices, setup_.picture_matrices,
+        frame.geometry,  frame.device,
+        frame.pipelines, ledger_,
+        frame.constants, frame.recorder,
+        bindings,        declarations_,
+        points,          points_,
+        batch.count,     index,
+        batches,         frame.frame_index,
+        frame.notes,     needs_.adjacency ? &setup_.scene.adjacency(frame.device) : nullptr};
     technique_->prepare(context);
     if (many) {
       shade_points(frame, bindings, batch, false);
@@ -247,7 +238,7 @@ void LightPass::shade_points(const Frame& frame, const vulkan::Bindings& binding
   if (uncertain) all.storage_image("scramble_sums", frame.uncertainty->sums());
   all.buffer("LightBlock", frame.constants.push(
                                light_data(light_, static_cast<float>(batch.count), batch.weight)));
-  if (list != nullptr) all.buffer("SampleBlock", list->texels.whole());
+  if (list != nullptr) all.texel_buffer("listed_samples", list->texels.view);
   const std::span<const glm::vec4> points(batch.points);
   frame.recorder.pass("shade", [&](vulkan::Commands& commands) {
     for (std::uint32_t set = 0; set < sets_; ++set) {

@@ -54,6 +54,7 @@ class PrepareContext {
   const std::string& declarations;    ///< GLSL of parameters and definitions, for own programs
   std::span<const glm::vec4> points;  ///< light points of this batch: points_per_batch places for
                                       ///< each sample of a pixel, points_in_batch of them in use
+  std::span<const glm::vec4> all_points;  ///< of all batches: as many for each sample of a pixel
   std::uint32_t points_in_batch;
   std::uint32_t batch;
   std::uint32_t batches;  ///< of this light in this frame

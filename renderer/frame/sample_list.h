@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/vulkan/commands.h"
+#include "renderer/vulkan/texel_view.h"
 
 namespace penumbra {
 
@@ -8,19 +9,16 @@ namespace penumbra {
 struct SampleWork {
   std::uint32_t first = 0;  ///< of a list
   std::uint32_t count = 0;
-  std::uint32_t set = 0;  ///< place of the samples in their pixels, 0 .. samples per pixel - 1
-  std::uint32_t first_node = 0;  ///< of a hierarchy that is walked in parts
-  std::uint32_t end_node = 0;
-  std::uint32_t last = 0;  ///< 1 in the last part
-  std::uint32_t slot = 0;  ///< of lists of occluders: see renderer/reference/occlusion_mask.comp
+  std::uint32_t set = 0;     ///< place of the samples in their pixels, 0 .. samples per pixel - 1
+  std::uint32_t nodes = 0;   ///< of the hierarchy that is walked
+  std::uint32_t rounds = 0;  ///< most of a walk in one dispatch
+  std::uint32_t slot = 0;    ///< of lists of occluders: see renderer/reference/occluder_lists.glsl
   std::uint32_t stride = 0;
-  std::uint32_t occluder_limit = 0;
-  std::uint32_t overflow_place = 0;
 };
 
 /// Samples of the frame that a pass has to work at.
 struct SampleList {
-  vulkan::Buffer texels;  ///< a word each: x, and y in the upper half
+  vulkan::TexelBuffer texels;  ///< a word each: x, and y in the upper half
   struct Range {
     std::uint32_t set;
     std::uint32_t first;

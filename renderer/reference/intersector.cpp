@@ -134,10 +134,10 @@ const Intersector& Intersector::of(vulkan::Device& device, const GpuScene& scene
       [&] { return std::make_shared<const Intersector>(device, scene); });
 }
 
-Intersector::TexelBuffer Intersector::make(vulkan::Device& device, const std::string& name,
-                                           const void* data, std::size_t bytes, VkFormat format,
-                                           std::size_t texel_bytes) {
-  TexelBuffer made;
+vulkan::TexelBuffer Intersector::make(vulkan::Device& device, const std::string& name,
+                                      const void* data, std::size_t bytes, VkFormat format,
+                                      std::size_t texel_bytes) {
+  vulkan::TexelBuffer made;
   made.buffer =
       upload(device, ledger_, name, data, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   made.view = vulkan::texel_view(device, name, made.buffer, format, texel_bytes);

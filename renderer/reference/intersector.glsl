@@ -94,11 +94,13 @@ TrianglePlanes planes_of(Shaft s, uint triangle) {
   return t;
 }
 
+// What rounding may do to a plane's value at a point whose coordinates are no larger than `farthest`.
+float range_margin(vec4 plane, vec3 farthest) { return 1e-6 * (dot(abs(plane.xyz), farthest) + abs(plane.w)); }
+
 // Least and greatest value of a plane over the shaft's box, widened by what rounding may do.
 vec2 range_of(Shaft s, vec4 plane) {
-  vec3 size = abs(plane.xyz);
   float value = at(plane, s.middle);
-  float spread = dot(size, s.half_size) + 1e-6 * (dot(size, abs(s.middle)) + abs(plane.w));
+  float spread = dot(abs(plane.xyz), s.half_size) + range_margin(plane, abs(s.middle));
   return vec2(value - spread, value + spread);
 }
 
@@ -113,17 +115,29 @@ int classify(Shaft s, TrianglePlanes t) {
   return range.x > 0.0 ? hides_all : hides_some;
 }
 
-// Goes on from `node` to the next leaf before `end` whose box the shaft meets; -1 if there is none.
+// Rounds that the loops of a walk may take still: a walk that needs more is to be resumed by another
+// dispatch.
+int rounds_left = 0x7fffffff;
+
+// Looks at a node and goes on to the next: the triangle of a leaf whose box the shaft meets, otherwise -1.
 // Boxes were widened against rounding when they were written.
+int step_node(Shaft s, inout uint node) {
+  uvec4 low = texelFetch(hierarchy_nodes, int(2u * node));
+  uvec4 high = texelFetch(hierarchy_nodes, int(2u * node + 1u));
+  bool inside = meets(s, uintBitsToFloat(low.xyz), uintBitsToFloat(high.xyz));
+  int triangle = inside ? int(high.w) : -1;
+  // Without branches: a driver that runs lanes in step executes both sides anyway.
+  node = inside && triangle < 0 ? node + 1u : low.w;
+  return triangle;
+}
+
+// Goes on from `node` to the next leaf before `end` that the shaft meets; -1 if there is none, or no rounds
+// are left.
 int next_leaf(Shaft s, inout uint node, uint end) {
   int triangle = -1;
-  while (node < end && triangle < 0) {
-    uvec4 low = texelFetch(hierarchy_nodes, int(2u * node));
-    uvec4 high = texelFetch(hierarchy_nodes, int(2u * node + 1u));
-    bool inside = meets(s, uintBitsToFloat(low.xyz), uintBitsToFloat(high.xyz));
-    triangle = inside ? int(high.w) : -1;
-    // Without branches: a driver that runs lanes in step executes both sides anyway.
-    node = inside && triangle < 0 ? node + 1u : low.w;
+  while (node < end && triangle < 0 && rounds_left > 0) {
+    --rounds_left;
+    triangle = step_node(s, node);
   }
   return triangle;
 }

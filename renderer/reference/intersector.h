@@ -2,6 +2,7 @@
 
 #include "renderer/frame/gpu_scene.h"
 #include "renderer/reference/hierarchy.h"
+#include "renderer/vulkan/texel_view.h"
 
 namespace penumbra::reference {
 
@@ -24,17 +25,13 @@ class Intersector {
   void bind(vulkan::Bindings& bindings) const;
 
  private:
-  struct TexelBuffer {
-    vulkan::Buffer buffer;
-    vulkan::Owned<VkBufferView> view;
-  };
-  TexelBuffer make(vulkan::Device& device, const std::string& name, const void* data,
-                   std::size_t bytes, VkFormat format, std::size_t texel_bytes);
+  vulkan::TexelBuffer make(vulkan::Device& device, const std::string& name, const void* data,
+                           std::size_t bytes, VkFormat format, std::size_t texel_bytes);
 
   vulkan::MemoryLedger ledger_;
   std::uint32_t node_count_ = 0;
   bool has_holes_ = false;
-  TexelBuffer nodes_, triangles_, hole_triangles_, hole_alphas_;
+  vulkan::TexelBuffer nodes_, triangles_, hole_triangles_, hole_alphas_;
 };
 
 }  // namespace penumbra::reference

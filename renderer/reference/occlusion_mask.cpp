@@ -3,105 +3,75 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include "renderer/reference/light_shafts.h"
 
 namespace penumbra::reference {
 namespace {
 
 constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch);
 
-/// Lists of occluders: places of a sample, and what all lists of a light may take together.
-constexpr std::uint64_t most_occluders = 64;
-constexpr std::uint64_t least_occluders = 8;
-constexpr std::uint64_t occluder_bytes = 96u << 20;
+/// Triangles that are tested in one dispatch: 8 bytes each.
+constexpr std::uint32_t most_pairs = 1u << 20;
 
-/// Behind the two counts of each set: samples with more occluders than places.
-constexpr std::uint32_t overflow_place = 2 * shader::max_supersampling;
+/// What all lists of occluders of a light may take together, and each of their places.
+constexpr std::uint64_t most_list_bytes = 96u << 20;
+constexpr std::uint64_t occluder_bytes = 8;
 
-struct ExtentBox {
-  glm::dvec3 low, high;
-};
-
-/// Box around the whole extent: positions, or directions of any length.
-ExtentBox extent_box(const WorldLight& light) {
-  const glm::dvec3 half = extent_half_size(*light.source);
-  const glm::dvec3 reach = glm::abs(light.right) * half.x + glm::abs(light.up) * half.y +
-                           glm::abs(light.direction) * half.z;
-  const glm::dvec3 middle(light.center);
-  return {middle - reach, middle + reach};
-}
-
-/// Of the hierarchy's units, in a metre; directions are as long as they are.
-double unit_of_points(const PrepareContext& context) {
-  return glm::mix(1.0, double{context.scene.inverse_size()}, context.light.center.w);
-}
-
-/// Widens a box by what rounding of points and receivers may do: that grows with their coordinates,
-/// or is that of unit directions at infinity, where `w` of the light's centre is 0.
-void widen(ExtentBox& box, double w, const GpuScene& scene) {
-  const glm::dvec3 reached(glm::max(glm::abs(scene.low()), glm::abs(scene.high())));
-  const glm::dvec3 far = glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
-                                  double{scene.inverse_size()} * reached);
-  const double reach = glm::mix(1.0, std::max({far.x, far.y, far.z}), w);
-  box.low -= 1e-6 * reach;
-  box.high += 1e-6 * reach;
-}
-
-/// Rasterisers interpolate positions from a corner of the picture: how far they round grows with
-/// what lies between its borders. Of a picture that is longer than this ratio it shows (lavapipe,
-/// 1218 by 8 pixels).
-constexpr float usual_ratio = 16.0f;
-
-/// How far receivers may lie from their surface, as a share of their places.
-float rounding_in(const GeometryBuffer& picture) {
-  const auto [low, high] = std::minmax(picture.width, picture.height);
-  const float ratio = static_cast<float>(high) / static_cast<float>(low);
-  return receiver_rounding * std::max(1.0f, ratio / usual_ratio);
-}
-
-/// Places of the light's points in the hierarchy's units, or directions as they are.
-std::vector<glm::vec4> points_of(const PrepareContext& context, std::uint32_t set) {
-  const auto points = context.points.subspan(std::size_t{set} * batch_size, batch_size);
-  const double scale = unit_of_points(context);
-  std::vector<glm::vec4> scaled;
-  for (const glm::vec4& point : points) scaled.emplace_back(scale * glm::dvec3(point), point.w);
-  return scaled;
-}
-
-/// For the points of one sample of a pixel.
-shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
-  shader::ShaftData data{};
-  const std::vector<glm::vec4> points = points_of(context, set);
-  ExtentBox batch{glm::dvec3(points.front()), glm::dvec3(points.front())};
-  for (std::uint32_t i = 0; i < context.points_in_batch; ++i) {
-    batch.low = glm::min(batch.low, glm::dvec3(points[i]));
-    batch.high = glm::max(batch.high, glm::dvec3(points[i]));
-  }
-  ExtentBox whole = extent_box(context.light);
-  whole.low *= unit_of_points(context);
-  whole.high *= unit_of_points(context);
-  widen(batch, context.light.center.w, context.scene);
-  widen(whole, context.light.center.w, context.scene);
-  data.box_low = glm::vec4(batch.low, context.light.center.w);
-  data.box_high = glm::vec4(batch.high, rounding_in(context.geometry));
-  data.whole_low = glm::vec4(whole.low, extent_radius(*context.light.source));
-  data.whole_high = glm::vec4(whole.high, context.scene.inverse_size());
-  data.unused.x = context.points_in_batch < batch_size ? ~0u << context.points_in_batch : 0u;
-  return data;
-}
-
+/// A storage image of a word for each sample.
 vulkan::Image make_image(PrepareContext& context, const char* name, std::uint32_t layers) {
   vulkan::ImageDescription description;
   description.format = VK_FORMAT_R32_UINT;
   description.width = context.geometry.width;
   description.height = context.geometry.height;
   description.layers = layers;
-  description.usage =
-      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  description.usage = VK_IMAGE_USAGE_STORAGE_BIT;
   return {context.device, context.memory, name, description};
 }
 
+/// Words that shaders write, and read as texels of so many.
+vulkan::TexelBuffer make_texels(PrepareContext& context, const char* name, std::uint64_t texels,
+                                VkFormat format, std::uint32_t words,
+                                VkBufferUsageFlags usage = 0) {
+  const std::size_t texel_bytes = words * sizeof(std::uint32_t);
+  return vulkan::make_texel_buffer(context.device, context.memory, name, texels * texel_bytes,
+                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage, format, texel_bytes);
+}
+
+vulkan::Buffer make_words(PrepareContext& context, const char* name, std::uint64_t count,
+                          VkBufferUsageFlags usage = 0,
+                          vulkan::MemoryKind kind = vulkan::MemoryKind::device) {
+  return {context.device,
+          context.memory,
+          name,
+          count * sizeof(std::uint32_t),
+          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage,
+          kind};
+}
+
+std::vector<std::uint32_t> words_of(const vulkan::Buffer& buffer) {
+  std::vector<std::uint32_t> words(buffer.size() / sizeof(std::uint32_t));
+  std::memcpy(words.data(), buffer.mapped(), buffer.size());
+  return words;
+}
+
+/// Places of samples in a pixel, and of these along a side.
 std::uint32_t set_count(const PrepareContext& context) {
   return static_cast<std::uint32_t>(context.points.size()) / batch_size;
+}
+std::uint32_t side_of(std::uint32_t sets) {
+  return static_cast<std::uint32_t>(std::lround(std::sqrt(sets)));
+}
+
+std::uint32_t sample_count(const PrepareContext& context) {
+  return context.geometry.width * context.geometry.height;
+}
+
+std::uint32_t count_of(const std::vector<SampleList::Range>& ranges) {
+  std::uint32_t count = 0;
+  for (const SampleList::Range& range : ranges) count += range.count;
+  return count;
 }
 
 }  // namespace
@@ -116,182 +86,239 @@ float rounding_of(const GpuScene& scene, const glm::vec3& position,
 void OcclusionMask::trace(PrepareContext& context) {
   // One batch is not worth a look at the whole light first.
   const bool many = context.batches > 1;
-  if (!mask_) create(context, many);
+  if (!masks_) create_masks(context);
+  // Of the rounds of a picture with an error bound, the first may have one batch and later ones
+  // many.
+  if (many && !candidates_) create_lists(context);
+  if (many && context.batch == 0) find_samples(context);
+  const BatchData data = push_batch(context);
   if (!many) {
-    while (!dispatch_sets(context, "occlusion mask", "", nullptr)) {
-    }
+    walk(context, "occlusion mask", {"walk_hierarchy.comp", ""}, data, nullptr);
     return;
   }
-  if (context.batch == 0) {
-    find_samples(context);
-    list_occluders(context);
-  }
-  if (occluder_limit_ > 0)
-    while (!dispatch_sets(context, "occlusion mask", "#define OCCLUDERS_LISTED\n", &partly_lit_)) {
-    }
-  if (occluder_limit_ > 0 && overflowed_ == 0) return;
-  const char* unlisted = occluder_limit_ > 0
-                             ? "#define WITH_CANDIDATES\n#define SOME_OCCLUDERS_LISTED\n"
-                             : "#define WITH_CANDIDATES\n";
-  while (!dispatch_sets(context, "occlusion mask", unlisted, &partly_lit_)) {
+  test_listed(context, data);
+  walk(context, "occlusion mask", {"walk_hierarchy.comp", "#define WITH_CANDIDATES\n"}, data,
+       &walked_);
+}
+
+void OcclusionMask::create_masks(PrepareContext& context) {
+  masks_ = make_texels(context, "occlusion masks", sample_count(context), VK_FORMAT_R32_UINT, 1,
+                       VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  if (are_walks_long(context)) {
+    walk_places_ = make_image(context, "walk places", 1);
+    faults_ = make_words(context, "unfinished walks", 1, 0, vulkan::MemoryKind::readback);
   }
 }
 
-void OcclusionMask::create(PrepareContext& context, bool many) {
-  mask_ = make_image(context, "occlusion mask", 1);
-  if (!many) return;
+void OcclusionMask::create_lists(PrepareContext& context) {
   candidates_ = make_image(context, "occluder range", 2);
-  const VkDeviceSize samples = VkDeviceSize{context.geometry.width} * context.geometry.height;
-  lit_.texels = {context.device, context.memory, "sample list", samples * sizeof(std::uint32_t),
-                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-  found_ = {context.device,
-            context.memory,
-            "sample counts",
-            (overflow_place + 1) * sizeof(std::uint32_t),
-            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-            vulkan::MemoryKind::readback};
+  lit_.texels = make_texels(context, "sample list", sample_count(context), VK_FORMAT_R32_UINT, 1);
+  const std::uint64_t counts = std::uint64_t{set_count(context)} * class_count;
+  class_counts_ = make_words(context, "sample classes", counts,
+                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  found_ = make_words(context, "sample counts", counts, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                      vulkan::MemoryKind::readback);
+  list_counters_ = make_words(context, "occluder counts", 2, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                              vulkan::MemoryKind::readback);
 }
 
-/// Lists the samples that part and all of the light reaches.
+OcclusionMask::BatchData OcclusionMask::push_batch(PrepareContext& context) {
+  BatchData data;
+  for (std::uint32_t set = 0; set < set_count(context); ++set) {
+    const std::vector<glm::vec4> points = points_of(context, set);
+    data.shafts.push_back(context.constants.push(shaft_data(context, set)));
+    data.points.push_back(context.constants.push_array(std::span(std::as_const(points))));
+  }
+  return data;
+}
+
+/// Sorts the samples that any of the light reaches, and lists what may hide it from them.
 void OcclusionMask::find_samples(PrepareContext& context) {
-  do std::memset(found_.mapped(), 0, found_.size());
-  while (!dispatch_sets(context, "find occluders", "#define FIND_CANDIDATES\n", nullptr));
+  const BatchData data = push_batch(context);
+  const auto clear = [&](vulkan::Commands& commands) {
+    vkCmdFillBuffer(commands.handle(), class_counts_.handle(), 0, VK_WHOLE_SIZE, 0);
+  };
+  context.pass("find occluders", clear);
+  walk(context, "find occluders", {"find_occluders.comp", ""}, data, nullptr);
+  context.pass("find occluders", [&](vulkan::Commands& commands) {
+    const VkBufferCopy all{0, 0, found_.size()};
+    vkCmdCopyBuffer(commands.handle(), class_counts_.handle(), found_.handle(), 1, &all);
+    commands.barrier();
+    clear(commands);
+  });
   // The counts say how much the passes to come have to do.
   context.recorder.flush();
-  const std::uint32_t capacity =
-      context.geometry.width * context.geometry.height / set_count(context);
-  partly_lit_.clear();
-  lit_.ranges.clear();
-  for (std::uint32_t set = 0; set < set_count(context); ++set) {
-    const std::uint32_t fully = found(2 * set + 1);
-    partly_lit_.push_back({set, set * capacity, found(2 * set)});
-    lit_.ranges.push_back(partly_lit_.back());
-    lit_.ranges.push_back({set, (set + 1) * capacity - fully, fully, true});
-  }
+  const SampleClasses classes(words_of(found_), sample_count(context) / set_count(context));
+  sort_samples(context, classes);
+  lit_.ranges = classes.ranges(0, 1);
+  for (SampleList::Range& range : lit_.ranges) range.fully_lit = true;
+  for (const SampleList::Range& range : classes.ranges(1, class_count))
+    lit_.ranges.push_back(range);
+  list_occluders(context, data, classes);
 }
 
-/// Writes down what may hide the light from each sample that part of it reaches.
-void OcclusionMask::list_occluders(PrepareContext& context) {
-  std::uint64_t samples = 0;
-  for (const SampleList::Range& range : partly_lit_) samples += range.count;
-  occluder_limit_ = 0;
-  overflowed_ = 0;
-  // A walk in parts would have to go on where a list ends: not worth it.
-  if (samples == 0 ||
-      Intersector::of(context.device, context.scene).node_count() > nodes_per_range_)
-    return;
-  const std::uint64_t places = occluder_bytes / sizeof(std::uint32_t) / samples;
-  occluder_limit_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(most_occluders, places));
-  if (occluder_limit_ <= least_occluders) {
-    occluder_limit_ = 0;
-    return;
-  }
-  --occluder_limit_;  // a place for the count
-  const VkDeviceSize bytes = samples * (occluder_limit_ + 1) * sizeof(std::uint32_t);
-  if (occluders_.size() < bytes) {
-    occluders_ = {};
-    occluders_ = {context.device, context.memory, "occluder lists", bytes,
-                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-  }
-  if (!dispatch_sets(context, "list occluders", "#define LIST_OCCLUDERS\n#define WITH_CANDIDATES\n",
-                     &partly_lit_)) {
-    occluder_limit_ = 0;
-    return;
-  }
-  context.recorder.flush();
-  overflowed_ = found(overflow_place);
-}
-
-std::uint32_t OcclusionMask::found(std::uint32_t place) const {
-  std::uint32_t value = 0;
-  std::memcpy(&value, static_cast<const char*>(found_.mapped()) + place * sizeof(value),
-              sizeof(value));
-  return value;
-}
-
-/// Runs a variant of the program at the ranges of a list, one for each set, or at all samples.
-bool OcclusionMask::dispatch_sets(PrepareContext& context, const std::string& name,
-                                  std::string defines,
-                                  const std::vector<SampleList::Range>* ranges) {
-  const Intersector& intersector = Intersector::of(context.device, context.scene);
-  if (intersector.has_holes()) defines += "#define WITH_HOLES\n";
-  if (ranges != nullptr) defines += "#define WITH_SAMPLE_LIST\n";
+void OcclusionMask::sort_samples(PrepareContext& context, const SampleClasses& classes) {
   const vulkan::Pipeline& pipeline =
-      context.pipelines.compute("renderer/reference/occlusion_mask.comp", defines);
+      context.pipelines.compute("renderer/reference/sort_samples.comp", "");
   vulkan::Bindings bindings = context.frame_bindings;
-  intersector.bind(bindings);
-  bindings.storage_image("occlusion_mask", mask_);
-  if (candidates_) bindings.storage_image("candidates", candidates_);
-  if (lit_.texels) bindings.buffer("SampleBlock", lit_.texels.whole());
-  if (found_) bindings.buffer("FoundBlock", found_.whole());
-  if (occluders_) bindings.buffer("OccluderBlock", occluders_.whole());
-  if (may_end_early(context)) {
-    if (!faults_)
-      faults_ = {context.device,
-                 context.memory,
-                 "walk faults",
-                 2 * sizeof(std::uint32_t),
-                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                 vulkan::MemoryKind::readback};
-    std::memset(faults_.mapped(), 0, faults_.size());
-    bindings.buffer("FaultBlock", faults_.whole());
-  }
-  SampleWork work;
-  work.occluder_limit = occluder_limit_;
-  work.overflow_place = overflow_place;
-  for (const SampleList::Range& range : partly_lit_) work.stride += range.count;
-  context.pass(name, [&](vulkan::Commands& commands) {
-    for (std::uint32_t set = 0; set < set_count(context); ++set) {
-      bindings.buffer("ShaftBlock", context.constants.push(shaft_data(context, set)));
-      bindings.buffer("LightPointBlock", context.constants.push_array(
-                                             std::span<const glm::vec4>(points_of(context, set))));
+  bindings.buffer("MaskBlock", masks_.buffer.whole());
+  bindings.buffer("ListedBlock", lit_.texels.buffer.whole());
+  bindings.buffer("ClassBlock", class_counts_.whole());
+  const std::uint32_t sets = set_count(context);
+  context.pass("find occluders", [&](vulkan::Commands& commands) {
+    for (std::uint32_t set = 0; set < sets; ++set) {
+      std::vector<glm::uvec4> starts;
+      for (std::uint32_t kind = 0; kind < class_count; ++kind)
+        starts.emplace_back(classes.ranges(kind, kind + 1)[set].first);
+      bindings.buffer("StartBlock", context.constants.push_array(std::span(std::as_const(starts))));
       commands.bind(pipeline, bindings);
+      SampleWork work;
       work.set = set;
-      walk(context, commands, ranges == nullptr ? nullptr : &(*ranges)[set], work);
-      if (ranges != nullptr) work.slot += (*ranges)[set].count;
+      dispatch_all(commands, context.geometry.width, context.geometry.height, side_of(sets), work);
     }
   });
-  return finished(context);
+}
+
+/// Writes down what may hide the light from samples in penumbrae, where that is little.
+void OcclusionMask::list_occluders(PrepareContext& context, const BatchData& data,
+                                   const SampleClasses& classes) {
+  // Lists as long as the memory allows: a class is the number of triangles.
+  std::uint32_t longest = shader::most_occluders;
+  while (classes.places(longest) * occluder_bytes > most_list_bytes) --longest;
+  chunks_ = classes.chunks(longest, most_pairs);
+  listed_ = classes.ranges(1, longest + 1);
+  walked_ = classes.ranges(longest + 1, class_count);
+  if (chunks_.empty()) return;
+  const auto reserve = [&](vulkan::TexelBuffer& buffer, const char* name, std::uint64_t texels,
+                           VkFormat format, std::uint32_t words, VkBufferUsageFlags usage = 0) {
+    if (buffer.buffer.size() >= texels * words * sizeof(std::uint32_t)) return;
+    buffer = {};
+    buffer = make_texels(context, name, texels, format, words, usage);
+  };
+  reserve(occluders_, "occluder lists", classes.places(longest), VK_FORMAT_R32G32_UINT, 2);
+  reserve(lists_, "occluder list places", count_of(listed_), VK_FORMAT_R32G32B32A32_UINT, 4);
+  reserve(pairs_, "occluder pairs", 2 + std::uint64_t{most_pairs}, VK_FORMAT_R32G32_UINT, 2,
+          VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  BatchData boxes = data;
+  for (std::uint32_t set = 0; set < set_count(context); ++set)
+    boxes.boxes.push_back(context.constants.push(batch_boxes(context, set)));
+  std::memset(list_counters_.mapped(), 0, list_counters_.size());
+  walk(context, "list occluders", {"list_occluders.comp", ""}, boxes, &listed_);
+  context.recorder.flush();
+  if (words_of(list_counters_)[1] == 0) return;
+  // Rounding has found triangles here that it did not find before: the hierarchy is walked instead.
+  chunks_.clear();
+  walked_ = classes.ranges(1, class_count);
+}
+
+/// Writes the masks of samples with lists.
+void OcclusionMask::test_listed(PrepareContext& context, const BatchData& data) {
+  if (chunks_.empty()) return;
+  const std::string holes =
+      Intersector::of(context.device, context.scene).has_holes() ? "#define WITH_HOLES\n" : "";
+  const vulkan::Pipeline& select = context.pipelines.compute("renderer/reference/select_pairs.comp",
+                                                             holes + "#define WITH_SAMPLE_LIST\n");
+  const vulkan::Pipeline& test =
+      context.pipelines.compute("renderer/reference/test_pairs.comp", holes);
+  vulkan::Bindings bindings = own_bindings(context);
+  SampleWork work;
+  work.stride = count_of(listed_);
+  context.pass("occlusion mask", [&](vulkan::Commands& commands) {
+    for (const SampleClasses::Chunk& chunk : chunks_) {
+      const std::uint32_t none[4] = {0, 1, 1, 0};  // of groups, and of pairs
+      vkCmdUpdateBuffer(commands.handle(), pairs_.buffer.handle(), 0, sizeof(none), none);
+      commands.barrier();
+      bindings.buffer("ShaftBlock", data.shafts[chunk.range.set]);
+      bindings.buffer("LightPointBlock", data.points[chunk.range.set]);
+      work.slot = chunk.slot;
+      commands.bind(select, bindings);
+      dispatch_range(commands, chunk.range, work);
+      commands.barrier();
+      commands.bind(test, bindings);
+      commands.constants(work);
+      commands.dispatch_indirect(pairs_.buffer);
+      commands.barrier();
+    }
+  });
+}
+
+vulkan::Bindings OcclusionMask::own_bindings(const PrepareContext& context) const {
+  vulkan::Bindings bindings = context.frame_bindings;
+  Intersector::of(context.device, context.scene).bind(bindings);
+  bindings.buffer("MaskBlock", masks_.buffer.whole());
+  if (candidates_) bindings.storage_image("candidates", candidates_);
+  if (walk_places_) bindings.storage_image("walk_places", walk_places_);
+  if (faults_) bindings.buffer("FaultBlock", faults_.whole());
+  if (class_counts_) bindings.buffer("ClassBlock", class_counts_.whole());
+  if (list_counters_) bindings.buffer("CounterBlock", list_counters_.whole());
+  if (lit_.texels) bindings.texel_buffer("listed_samples", lit_.texels.view);
+  const auto both = [&](const char* block, const char* texels, const vulkan::TexelBuffer& bound) {
+    if (!bound) return;
+    bindings.buffer(block, bound.buffer.whole());
+    bindings.texel_buffer(texels, bound.view);
+  };
+  both("ListBlock", "list_texels", lists_);
+  both("OccluderBlock", "occluder_texels", occluders_);
+  both("PairBlock", "pair_texels", pairs_);
+  return bindings;
+}
+
+void OcclusionMask::walk(PrepareContext& context, const std::string& name, Program program,
+                         const BatchData& data, const Ranges* ranges) {
+  const Intersector& intersector = Intersector::of(context.device, context.scene);
+  SampleWork work;
+  work.nodes = intersector.node_count();
+  work.rounds = rounds_;
+  if (ranges != nullptr) {
+    work.stride = count_of(*ranges);
+    if (work.stride == 0) return;
+    program.defines += "#define WITH_SAMPLE_LIST\n";
+  }
+  const bool are_long = are_walks_long(context);
+  if (intersector.has_holes()) program.defines += "#define WITH_HOLES\n";
+  if (are_long) program.defines += "#define LONG_WALKS\n";
+  vulkan::Bindings bindings = own_bindings(context);
+  const std::uint32_t sets = set_count(context);
+  const char* resumed = "";
+  do {
+    const vulkan::Pipeline& pipeline = context.pipelines.compute(
+        std::string("renderer/reference/") + program.file, program.defines + resumed);
+    if (are_long) std::memset(faults_.mapped(), 0, faults_.size());
+    context.pass(name, [&](vulkan::Commands& commands) {
+      work.slot = 0;
+      for (std::uint32_t set = 0; set < sets; ++set) {
+        bindings.buffer("ShaftBlock", data.shafts[set]);
+        bindings.buffer("LightPointBlock", data.points[set]);
+        if (!data.boxes.empty()) bindings.buffer("BatchBoxBlock", data.boxes[set]);
+        commands.bind(pipeline, bindings);
+        work.set = set;
+        if (ranges == nullptr) {
+          dispatch_all(commands, context.geometry.width, context.geometry.height, side_of(sets),
+                       work);
+        } else {
+          dispatch_range(commands, (*ranges)[set], work);
+          work.slot += (*ranges)[set].count;
+        }
+      }
+    });
+    resumed = "#define RESUMED\n";
+  } while (are_long && unfinished(context) > 0);
 }
 
 /// Whether a walk may take so many rounds that a driver ends it; otherwise the frame's own counter
 /// sees that none is.
-bool OcclusionMask::may_end_early(const PrepareContext& context) const {
-  constexpr std::uint32_t surely_finished = 8000;
-  return std::min(nodes_per_range_, Intersector::of(context.device, context.scene).node_count()) >
-         surely_finished;
+bool OcclusionMask::are_walks_long(const PrepareContext& context) const {
+  return Intersector::of(context.device, context.scene).node_count() > rounds_;
 }
 
-bool OcclusionMask::finished(PrepareContext& context) {
-  if (!may_end_early(context)) return true;
+/// Walks that the last pass left off.
+std::uint32_t OcclusionMask::unfinished(PrepareContext& context) const {
   context.recorder.flush();
-  std::uint32_t counts[2];
-  std::memcpy(counts, faults_.mapped(), sizeof(counts));
-  if (counts[1] == 0) return true;
-  nodes_per_range_ =
-      std::min(nodes_per_range_, Intersector::of(context.device, context.scene).node_count()) / 2;
-  return false;
-}
-
-/// Dispatches the bound program, several times where the hierarchy is too large for one walk.
-void OcclusionMask::walk(const PrepareContext& context, vulkan::Commands& commands,
-                         const SampleList::Range* range, SampleWork work) const {
-  const std::uint32_t nodes = Intersector::of(context.device, context.scene).node_count();
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(set_count(context))));
-  do {
-    if (work.first_node > 0) commands.barrier();
-    work.end_node = std::min(work.first_node + nodes_per_range_, nodes);
-    work.last = work.end_node == nodes ? 1 : 0;
-    if (range != nullptr)
-      dispatch_range(commands, *range, work);
-    else
-      dispatch_all(commands, context.geometry.width, context.geometry.height, side, work);
-    work.first_node = work.end_node;
-  } while (work.first_node < nodes);
+  return words_of(faults_)[0];
 }
 
 void OcclusionMask::bind(vulkan::Bindings& bindings) const {
-  bindings.texture("occlusion_mask", mask_, vulkan::Sampling::nearest);
+  bindings.texel_buffer("occlusion_masks", masks_.view);
 }
 
 }  // namespace penumbra::reference

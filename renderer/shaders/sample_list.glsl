@@ -10,15 +10,13 @@ layout(local_size_x = 64) in;
 layout(push_constant) uniform WorkBlock {
   uint first, count;          // of the list
   uint set;                   // place within the pixel
-  uint first_node, end_node;
-  uint last;                  // 1 if no nodes come after these
+  uint nodes;                 // of the hierarchy
+  uint rounds;                // most of a walk in a dispatch
   uint slot, stride;          // of lists of occluders: of the first sample, between places
-  uint occluder_limit;        // places of a sample
-  uint overflow_place;        // counter of samples that have more
 } work;
 
 #ifdef WITH_SAMPLE_LIST
-layout(std430) readonly buffer SampleBlock { uint listed_samples[]; };  // x, and y in the upper half
+uniform usamplerBuffer listed_samples;  // x, and y in the upper half
 
 // Of this invocation within the range.
 uint listed_index() {
@@ -27,7 +25,7 @@ uint listed_index() {
 
 bool find_sample(out ivec2 texel) {
   uint index = listed_index();
-  uint listed = listed_samples[work.first + min(index, work.count - 1u)];
+  uint listed = texelFetch(listed_samples, int(work.first + min(index, work.count - 1u))).r;
   texel = ivec2(listed & 0xffffu, listed >> 16);
   return index < work.count;
 }

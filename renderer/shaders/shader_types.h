@@ -130,6 +130,24 @@ struct TileSums {
                // z 0 where nothing is seen that faces the light
 };
 
+// Classes of samples, by what a look at the whole light found: 0 nothing hides any of it; up to
+// most_occluders the number of triangles that may; then two for each power of two, to the one
+// before which counting stops.
+PENUMBRA_CONSTANT int most_occluders_power = 6;
+PENUMBRA_CONSTANT int most_occluders = 1 << most_occluders_power;
+PENUMBRA_CONSTANT int most_counted_power = 7;
+PENUMBRA_CONSTANT int sample_classes =
+    most_occluders + 1 + 2 * (most_counted_power - most_occluders_power);
+
+// Bits that tell batches of a light's points apart.
+PENUMBRA_CONSTANT int batch_bits = 32;
+
+/// Box around the points of the batches of one bit.
+struct BatchBox {
+  vec4 middle;
+  vec4 half_size;
+};
+
 /// Boxes that hold the light points of one batch and sample of a pixel: positions in the
 /// hierarchy's units, or directions that need not be unit.
 struct ShaftData {
@@ -138,7 +156,7 @@ struct ShaftData {
   vec4 whole_low;   // box of the whole extent; w distance of its farthest point from the centre,
                     // m, or a tangent for directions
   vec4 whole_high;  // w units of the hierarchy in a metre
-  uvec4 unused;     // x bits of points that the batch does not have
+  uvec4 bits;       // x of points that the batch does not have; y place of the batch's own bit
 };
 
 #ifdef __cplusplus

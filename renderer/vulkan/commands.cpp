@@ -170,6 +170,10 @@ void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   vkCmdDispatch(commands_, x, y, z);
 }
 
+void Commands::dispatch_indirect(const Buffer& arguments) {
+  vkCmdDispatchIndirect(commands_, arguments.handle(), 0);
+}
+
 void Commands::barrier() {
   global_barrier(commands_);
 }

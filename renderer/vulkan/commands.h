@@ -56,6 +56,8 @@ class Commands {
   void draw(std::uint32_t vertices, std::uint32_t instances = 1);
   void full_screen_triangle() { draw(3); }
   void dispatch(std::uint32_t x, std::uint32_t y = 1, std::uint32_t z = 1);
+  /// With the groups that the first three words of `arguments` tell when it runs.
+  void dispatch_indirect(const Buffer& arguments);
   void barrier();  ///< global_barrier
 
  private:

@@ -9,8 +9,8 @@ Owned<VkBufferView> texel_view(Device& device, const std::string& name, const Bu
   const std::size_t limit = device.properties.limits.maxTexelBufferElements;
   const std::size_t texels = buffer.size() / texel_bytes;
   if (texels > limit)
-    throw unsupported("the scene has too many triangles for this device: " + name + " take " +
-                      std::to_string(texels) + " of at most " + std::to_string(limit) + " texels");
+    throw unsupported("more than this device reads: " + name + " take " + std::to_string(texels) +
+                      " of at most " + std::to_string(limit) + " texels");
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   info.buffer = buffer.handle();
   info.format = format;
@@ -18,6 +18,16 @@ Owned<VkBufferView> texel_view(Device& device, const std::string& name, const Bu
   VkBufferView view = VK_NULL_HANDLE;
   check(vkCreateBufferView(device.handle, &info, nullptr, &view), "vkCreateBufferView");
   return {device.handle, view};
+}
+
+TexelBuffer make_texel_buffer(Device& device, MemoryLedger& ledger, const std::string& name,
+                              VkDeviceSize bytes, VkBufferUsageFlags usage, VkFormat format,
+                              std::size_t texel_bytes) {
+  TexelBuffer made;
+  made.buffer =
+      Buffer(device, ledger, name, bytes, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  made.view = texel_view(device, name, made.buffer, format, texel_bytes);
+  return made;
 }
 
 }  // namespace penumbra::vulkan

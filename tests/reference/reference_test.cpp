@@ -223,7 +223,7 @@ TEST_F(ReferencePicture, ChargesHierarchyAndMaskToTheTechnique) {
   std::map<std::string, std::uint64_t> bytes;
   for (const ResourceCost& resource : result.cost.technique_memory)
     bytes[resource.name] = resource.bytes;
-  EXPECT_GE(bytes["occlusion mask"], scene->lights.size() * 64 * 64 * 4);
+  EXPECT_GE(bytes["occlusion masks"], scene->lights.size() * 64 * 64 * 4);
   // One hierarchy for all lights: 48 bytes a triangle, and 2n - 1 nodes of 32 bytes.
   std::uint64_t triangles = 0;
   for (const Instance& instance : scene->instances)

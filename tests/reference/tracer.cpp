@@ -198,7 +198,7 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
                                                       std::span<const Receiver> receivers,
                                                       std::uint32_t size,
                                                       std::span<const glm::vec4> points,
-                                                      std::uint32_t nodes_per_range) {
+                                                      std::uint32_t rounds) {
   constexpr std::size_t batch_size = shader::points_per_batch;
   const GeometryBuffer geometry = upload_receivers(receivers, size);
   const WorldLight world = world_light(light, scene_->origin());
@@ -221,7 +221,7 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
   frame.camera_position = glm::vec4(scene_->to_world(eye), 1.0f);
   const vulkan::Buffer copied(device_, ledger_, "masks", receivers.size() * 4,
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, vulkan::MemoryKind::readback);
-  reference::OcclusionMask mask(nodes_per_range);
+  reference::OcclusionMask mask(rounds);
   const auto batches = static_cast<std::uint32_t>((points.size() + batch_size - 1) / batch_size);
   std::vector<std::vector<std::uint32_t>> result;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
@@ -238,20 +238,33 @@ std::vector<std::vector<std::uint32_t>> Tracer::masks(const Light& light,
     bindings.texture("geometry_position", geometry.position, vulkan::Sampling::nearest);
     bindings.texture("geometry_words", geometry.words, vulkan::Sampling::nearest);
     const LightFit fit;
-    PrepareContext context{input,      *scene_,      world,      fit,
-                           camera,     camera,       geometry,   device_,
-                           pipelines_, ledger_,      constants_, recorder_,
-                           bindings,   declarations, own,        static_cast<std::uint32_t>(count),
-                           batch,      batches,      0,          notes,
+    PrepareContext context{input,
+                           *scene_,
+                           world,
+                           fit,
+                           camera,
+                           camera,
+                           geometry,
+                           device_,
+                           pipelines_,
+                           ledger_,
+                           constants_,
+                           recorder_,
+                           bindings,
+                           declarations,
+                           own,
+                           points,
+                           static_cast<std::uint32_t>(count),
+                           batch,
+                           batches,
+                           0,
+                           notes,
                            nullptr};
     recorder_.begin(false);
     mask.trace(context);
     recorder_.pass("copy", [&](vulkan::Commands& commands) {
-      VkBufferImageCopy copy{};
-      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      copy.imageExtent = {size, size, 1};
-      vkCmdCopyImageToBuffer(commands.handle(), mask.image().handle(), VK_IMAGE_LAYOUT_GENERAL,
-                             copied.handle(), 1, &copy);
+      const VkBufferCopy all{0, 0, copied.size()};
+      vkCmdCopyBuffer(commands.handle(), mask.masks().handle(), copied.handle(), 1, &all);
     });
     recorder_.end();
     device_.throw_if_validation_failed();

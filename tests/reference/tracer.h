@@ -47,7 +47,7 @@ class Tracer {
   std::vector<std::vector<std::uint32_t>> masks(
       const Light& light, std::span<const Receiver> receivers, std::uint32_t size,
       std::span<const glm::vec4> points,
-      std::uint32_t nodes_per_range = reference::OcclusionMask::default_range);
+      std::uint32_t rounds = reference::OcclusionMask::default_rounds);
   std::uint32_t unfinished() const;
 
  private:
