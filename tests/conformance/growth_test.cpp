@@ -1,9 +1,8 @@
 // Workers draw for days: a frame that was drawn before takes no memory.
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <malloc.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 
 #include "renderer/render.h"
@@ -13,14 +12,14 @@
 namespace penumbra {
 namespace {
 
-std::int64_t resident_bytes() {
-  std::int64_t pages = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> pages >> resident;
-  return resident * sysconf(_SC_PAGESIZE);
+/// Of all of the process's heaps.
+double bytes_in_use() {
+  const auto heaps = mallinfo2();
+  return static_cast<double>(heaps.uordblks + heaps.hblkhd);
 }
 
 /// What a further frame takes, in bytes, once everything has been drawn that is drawn at all: the
-/// least of three tries, for allocators grow in leaps.
+/// least of three tries, for drivers have threads that free later.
 double growth(Renderer& renderer, RenderRequest request) {
   constexpr std::uint32_t frames = 16;
   request.width = 48;
@@ -30,14 +29,14 @@ double growth(Renderer& renderer, RenderRequest request) {
   renderer.render(request);
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
-    const std::int64_t before = resident_bytes();
+    const double before = bytes_in_use();
     renderer.render(request);
-    least = std::min(least, static_cast<double>(resident_bytes() - before) / frames);
+    least = std::min(least, (bytes_in_use() - before) / frames);
   }
   return least;
 }
 
-constexpr double most_growth = 32.0 * 1024.0;
+constexpr double most_growth = 16.0 * 1024.0;
 
 RenderRequest request_for(Scene scene, const std::string& technique,
                           const ParameterValues& parameters = {}) {
