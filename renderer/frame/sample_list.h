@@ -12,8 +12,7 @@ struct SampleWork {
   std::uint32_t set = 0;     ///< place of the samples in their pixels, 0 .. samples per pixel - 1
   std::uint32_t nodes = 0;   ///< of the hierarchy that is walked
   std::uint32_t rounds = 0;  ///< most of a walk in one dispatch
-  std::uint32_t slot = 0;    ///< of lists of occluders: see renderer/reference/occluder_lists.glsl
-  std::uint32_t stride = 0;
+  std::uint32_t slot = 0;    ///< of the first sample among those that keep something of their own
 };
 
 /// Samples of the frame that a pass has to work at.

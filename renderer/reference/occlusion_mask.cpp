@@ -15,9 +15,11 @@ constexpr auto batch_size = static_cast<std::uint32_t>(shader::points_per_batch)
 /// Triangles that are tested in one dispatch: 8 bytes each.
 constexpr std::uint32_t most_pairs = 1u << 20;
 
-/// What all lists of occluders of a light may take together, and each of their places.
+/// What all occluders of a light may take together, and all lists of them.
 constexpr std::uint64_t most_list_bytes = 96u << 20;
-constexpr std::uint64_t occluder_bytes = 8;
+/// An occluder, and where a list is, as occluder_lists.glsl has them.
+constexpr std::uint32_t occluder_words = 2;
+constexpr std::uint32_t list_words = 4;
 
 /// A storage image of a word for each sample.
 vulkan::Image make_image(PrepareContext& context, const char* name, std::uint32_t layers) {
@@ -90,12 +92,13 @@ void OcclusionMask::trace(PrepareContext& context) {
   // Of the rounds of a picture with an error bound, the first may have one batch and later ones
   // many.
   if (many && !candidates_) create_lists(context);
-  if (many && context.batch == 0) find_samples(context);
   const BatchData data = push_batch(context);
   if (!many) {
+    lit_.ranges.clear();
     walk(context, "occlusion mask", {"walk_hierarchy.comp", ""}, data, nullptr);
     return;
   }
+  if (context.batch == 0) find_samples(context, data);
   test_listed(context, data);
   walk(context, "occlusion mask", {"walk_hierarchy.comp", "#define WITH_CANDIDATES\n"}, data,
        &walked_);
@@ -133,8 +136,7 @@ OcclusionMask::BatchData OcclusionMask::push_batch(PrepareContext& context) {
 }
 
 /// Sorts the samples that any of the light reaches, and lists what may hide it from them.
-void OcclusionMask::find_samples(PrepareContext& context) {
-  const BatchData data = push_batch(context);
+void OcclusionMask::find_samples(PrepareContext& context, const BatchData& data) {
   const auto clear = [&](vulkan::Commands& commands) {
     vkCmdFillBuffer(commands.handle(), class_counts_.handle(), 0, VK_WHOLE_SIZE, 0);
   };
@@ -184,7 +186,12 @@ void OcclusionMask::list_occluders(PrepareContext& context, const BatchData& dat
                                    const SampleClasses& classes) {
   // Lists as long as the memory allows: a class is the number of triangles.
   std::uint32_t longest = shader::most_occluders;
-  while (classes.places(longest) * occluder_bytes > most_list_bytes) --longest;
+  const auto bytes = [](std::uint64_t count, std::uint32_t words) {
+    return count * words * sizeof(std::uint32_t);
+  };
+  while (bytes(classes.places(longest), occluder_words) > most_list_bytes ||
+         bytes(count_of(classes.ranges(1, longest + 1)), list_words) > most_list_bytes)
+    --longest;
   chunks_ = classes.chunks(longest, most_pairs);
   listed_ = classes.ranges(1, longest + 1);
   walked_ = classes.ranges(longest + 1, class_count);
@@ -195,8 +202,10 @@ void OcclusionMask::list_occluders(PrepareContext& context, const BatchData& dat
     buffer = {};
     buffer = make_texels(context, name, texels, format, words, usage);
   };
-  reserve(occluders_, "occluder lists", classes.places(longest), VK_FORMAT_R32G32_UINT, 2);
-  reserve(lists_, "occluder list places", count_of(listed_), VK_FORMAT_R32G32B32A32_UINT, 4);
+  reserve(occluders_, "occluder lists", classes.places(longest), VK_FORMAT_R32G32_UINT,
+          occluder_words);
+  reserve(lists_, "occluder list places", count_of(listed_), VK_FORMAT_R32G32B32A32_UINT,
+          list_words);
   reserve(pairs_, "occluder pairs", 2 + std::uint64_t{most_pairs}, VK_FORMAT_R32G32_UINT, 2,
           VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   BatchData boxes = data;
@@ -222,7 +231,6 @@ void OcclusionMask::test_listed(PrepareContext& context, const BatchData& data) 
       context.pipelines.compute("renderer/reference/test_pairs.comp", holes);
   vulkan::Bindings bindings = own_bindings(context);
   SampleWork work;
-  work.stride = count_of(listed_);
   context.pass("occlusion mask", [&](vulkan::Commands& commands) {
     for (const SampleClasses::Chunk& chunk : chunks_) {
       const std::uint32_t none[4] = {0, 1, 1, 0};  // of groups, and of pairs
@@ -235,7 +243,6 @@ void OcclusionMask::test_listed(PrepareContext& context, const BatchData& data) 
       dispatch_range(commands, chunk.range, work);
       commands.barrier();
       commands.bind(test, bindings);
-      commands.constants(work);
       commands.dispatch_indirect(pairs_.buffer);
       commands.barrier();
     }
@@ -270,8 +277,7 @@ void OcclusionMask::walk(PrepareContext& context, const std::string& name, Progr
   work.nodes = intersector.node_count();
   work.rounds = rounds_;
   if (ranges != nullptr) {
-    work.stride = count_of(*ranges);
-    if (work.stride == 0) return;
+    if (count_of(*ranges) == 0) return;
     program.defines += "#define WITH_SAMPLE_LIST\n";
   }
   const bool are_long = are_walks_long(context);
@@ -308,7 +314,10 @@ void OcclusionMask::walk(PrepareContext& context, const std::string& name, Progr
 /// Whether a walk may take so many rounds that a driver ends it; otherwise the frame's own counter
 /// sees that none is.
 bool OcclusionMask::are_walks_long(const PrepareContext& context) const {
-  return Intersector::of(context.device, context.scene).node_count() > rounds_;
+  const Intersector& intersector = Intersector::of(context.device, context.scene);
+  // Half of the nodes are leaves, and a test of one with holes goes through all points in a loop.
+  const std::uint64_t rounds_of_node = intersector.has_holes() ? 1 + (batch_size + 1) / 2 + 1 : 1;
+  return rounds_of_node * intersector.node_count() > rounds_;
 }
 
 /// Walks that the last pass left off.

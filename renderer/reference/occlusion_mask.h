@@ -23,8 +23,9 @@ class OcclusionMask {
   /// Rounds of loops that a sample's walk may take in one dispatch; then another one resumes it.
   /// Eight lanes that run in step wait for one another, and some drivers end loops after 65,535
   /// rounds.
-  static constexpr std::uint32_t default_rounds = 8000;
+  static constexpr std::uint32_t default_rounds = 7500;
 
+  /// `rounds`: 2 at least.
   explicit OcclusionMask(std::uint32_t rounds = default_rounds) : rounds_(rounds) {}
 
   /// Records the passes for the context's batch. The first of several batches also proves samples
@@ -37,8 +38,8 @@ class OcclusionMask {
 
   const vulkan::Buffer& masks() const { return masks_.buffer; }  ///< words, samples of the frame
 
-  /// Samples that part or all of the light reaches, once there was a first of several batches.
-  const SampleList* lit_samples() const { return lit_.texels ? &lit_ : nullptr; }
+  /// Samples that part or all of the light reaches, where there are several batches.
+  const SampleList* lit_samples() const { return lit_.ranges.empty() ? nullptr : &lit_; }
 
  private:
   using Ranges = std::vector<SampleList::Range>;  ///< one of each place in a pixel
@@ -54,7 +55,7 @@ class OcclusionMask {
   void create_masks(PrepareContext& context);
   void create_lists(PrepareContext& context);
   static BatchData push_batch(PrepareContext& context);
-  void find_samples(PrepareContext& context);
+  void find_samples(PrepareContext& context, const BatchData& data);
   void sort_samples(PrepareContext& context, const SampleClasses& classes);
   void list_occluders(PrepareContext& context, const BatchData& data, const SampleClasses& classes);
   void test_listed(PrepareContext& context, const BatchData& data);

@@ -84,8 +84,15 @@ uint without_holes(TrianglePlanes t, uint triangle, uint mask) {
 }
 #endif
 
-// What of the points a triangle hides of which `classify` has said that it may hide some.
-uint hidden_partly(TrianglePlanes planes, uint triangle) {
+// Loops' rounds of a test, of those that a driver allows a walk.
+#ifdef WITH_HOLES
+const int rounds_of_test = points_per_batch + 1;
+#else
+const int rounds_of_test = 1;
+#endif
+
+// Points that a triangle hides, less those that are seen through its holes.
+uint hidden_by_triangle(TrianglePlanes planes, uint triangle) {
   uint hidden = hidden_by(planes);
 #ifdef WITH_HOLES
   hidden = without_holes(planes, triangle, hidden);

@@ -2,6 +2,7 @@
 #ifndef PENUMBRA_RECEIVER_GLSL
 #define PENUMBRA_RECEIVER_GLSL
 #include "renderer/reference/intersector.glsl"
+#include "renderer/reference/mask_place.glsl"
 #include "renderer/shaders/lighting.glsl"
 #include "renderer/shaders/sample_list.glsl"
 #include "renderer/shaders/texel.glsl"
@@ -13,8 +14,6 @@ uniform usampler2D geometry_words;
 layout(std430) buffer MaskBlock { uint occlusion_masks[]; };  // as occlusion_mask.glsl has them
 
 const uint all_hidden = 0xffffffffu;
-
-uint mask_place(ivec2 texel) { return uint(texel.y) * uint(frame.size.x) + uint(texel.x); }
 
 struct Receiver {
   vec3 origin;    // in the hierarchy's units, where no scene is larger than 2

@@ -1,6 +1,7 @@
 // Lists the samples that light reaches, ordered by the class that find_occluders.comp wrote as their mask:
 // neighbours in the list have about as much to look at, and lanes that run in step do not wait for one
 // another.
+#include "renderer/reference/mask_place.glsl"
 #include "renderer/shaders/sample_list.glsl"
 
 layout(std140) uniform StartBlock { uvec4 starts[sample_classes]; };  // x where in the list a class begins
@@ -17,7 +18,7 @@ void main() {
   uint lane = gl_LocalInvocationIndex;
   for (uint i = lane; i < uint(sample_classes); i += 64u) group_counts[i] = 0u;
   barrier();
-  uint kind = inside ? occlusion_masks[uint(texel.y) * uint(frame.size.x) + uint(texel.x)] : 0xffffffffu;
+  uint kind = inside ? occlusion_masks[mask_place(texel)] : 0xffffffffu;
   bool is_lit = kind < uint(sample_classes);
   uint place = is_lit ? atomicAdd(group_counts[kind], 1u) : 0u;
   barrier();

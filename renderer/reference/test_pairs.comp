@@ -11,6 +11,6 @@ void main() {
   uvec2 pair = texelFetch(pair_texels, int(2u + min(index, count - 1u))).xy;
   ivec2 texel = ivec2(pair.x & 0xffffu, pair.x >> 16);
   Shaft shaft = shaft_to_batch(read_receiver(texel));
-  uint hidden = hidden_partly(planes_of(shaft, pair.y), pair.y);
+  uint hidden = hidden_by_triangle(planes_of(shaft, pair.y), pair.y);
   if (index < count && hidden != 0u) atomicOr(occlusion_masks[mask_place(texel)], hidden);
 }

@@ -44,8 +44,8 @@ void main() {
       count += found ? 1 : 0;
     }
     while (count > 0 && mask != all_hidden) {
-      --rounds_left;
-      mask |= hidden_partly(planes_of(shaft, collected[0]), collected[0]);
+      rounds_left -= rounds_of_test;
+      mask |= hidden_by_triangle(planes_of(shaft, collected[0]), collected[0]);
       for (int i = 1; i < most_collected; ++i) collected[i - 1] = collected[i];
       --count;
     }

@@ -100,7 +100,10 @@ bool is_outside_light(vec3 x, float radius) {
   float sine = sqrt(light.up.w * (2.0 - light.up.w));
   bool aside = across * light.cone.y - along * sine > radius + 1e-4 * (from + radius);
   bool spot = light_kind() == light_kind_spot;
-  return mix(mix(beyond, true, spot ? aside : false), false, is_at_infinity());
+  bool parallel = is_at_infinity();
+  bool beside = spot && aside;
+  bool outside = beyond || beside;
+  return outside && !parallel;
 }
 
 bool has_extent() { return extent_kind() != extent_kind_none; }
@@ -128,7 +131,8 @@ void turn_to_extent(inout vec3 right, inout vec3 up) {
 float extent_distance(float light_distance) { return mix(light_distance, 1.0, is_at_infinity()); }
 
 // Tangents of the planes that touch the light past an edge across its rays, `height` from it: along the
-// edge, and at its ends, `half_length` from the middle. False where the light reaches around on every side.
+// edge, and at its ends, `half_length` from the middle. False where the light reaches around on every side:
+// they are undefined then.
 bool tangents_past_edge(float height, float half_length, out float across, out float outwards) {
   float radius = light_radius();
   bool parallel = is_at_infinity();

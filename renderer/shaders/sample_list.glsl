@@ -12,7 +12,7 @@ layout(push_constant) uniform WorkBlock {
   uint set;                   // place within the pixel
   uint nodes;                 // of the hierarchy
   uint rounds;                // most of a walk in a dispatch
-  uint slot, stride;          // of lists of occluders: of the first sample, between places
+  uint slot;                  // of the first sample among those that keep something of their own
 } work;
 
 #ifdef WITH_SAMPLE_LIST

@@ -55,9 +55,9 @@ void main() {
   for (int k = 0; k < 3; ++k)
     end[k] = frame.clip_from_world * end_of_shadow(world_position[k * stride]);
 #ifdef WITH_CAPS
-  // Caps of open meshes at their own triangles are drawn by open_cap.vert; of closed ones no lit triangle
-  // comes here. A cap keeps its first
-  // corner, so that turning it over does not change its depth.
+  // Caps of open meshes at their own triangles are drawn by open_cap.vert; of closed ones that are counted
+  // with caps no lit triangle comes here. A cap keeps its first corner, so that turning it over does not
+  // change its depth.
   bool is_closed = volume.every_triangle == 0u;
   if (!lit && is_closed)
     emit(gl_in[0].gl_Position, gl_in[2 * stride].gl_Position, gl_in[stride].gl_Position);

@@ -9,8 +9,8 @@ Owned<VkBufferView> texel_view(Device& device, const std::string& name, const Bu
   const std::size_t limit = device.properties.limits.maxTexelBufferElements;
   const std::size_t texels = buffer.size() / texel_bytes;
   if (texels > limit)
-    throw unsupported("more than this device reads: " + name + " take " + std::to_string(texels) +
-                      " of at most " + std::to_string(limit) + " texels");
+    throw unsupported("the scene or the picture is too large for this device: " + name + " take " +
+                      std::to_string(texels) + " of at most " + std::to_string(limit) + " texels");
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   info.buffer = buffer.handle();
   info.format = format;

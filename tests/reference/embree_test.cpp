@@ -102,7 +102,8 @@ TEST(OcclusionMask, AgreesWithEmbreeAroundASphereOfLightBetweenTheBoxes) {
 
 /// The scene with so many specks of dust before its first light, of a size that leaves most of the
 /// light: a walk towards a batch of points meets a share of them and finds no end before the last.
-std::shared_ptr<const Scene> with_dust(Scene scene, std::uint32_t count) {
+std::shared_ptr<const Scene> with_dust(Scene scene, std::uint32_t count,
+                                       std::uint32_t material = 0) {
   const Light& light = scene.lights.front();
   const glm::dvec3 towards = glm::normalize(light.direction);
   const glm::dvec3 across = glm::normalize(glm::cross(towards, glm::dvec3(0.3, 0.2, 0.9)));
@@ -119,10 +120,11 @@ std::shared_ptr<const Scene> with_dust(Scene scene, std::uint32_t count) {
       mesh.positions.emplace_back(middle +
                                   speck * glm::dvec3(unit(random), unit(random), unit(random)));
       mesh.normals.emplace_back(glm::vec3(towards));
+      mesh.uvs.emplace_back(unit(random), unit(random));
       mesh.indices.push_back(3 * i + static_cast<std::uint32_t>(corner));
     }
   }
-  mesh.primitives = {{0, 3 * count, 0}};
+  mesh.primitives = {{0, 3 * count, material}};
   Instance instance;
   instance.name = "dust";
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
@@ -158,6 +160,36 @@ TEST(OcclusionMask, IsTheSameWhenTheHierarchyIsWalkedInParts) {
   EXPECT_EQ(tracer.masks(light, receivers, 64, points, 137), whole);
   const auto alone = std::span<const glm::vec4>(points).first(32);
   EXPECT_EQ(tracer.masks(light, receivers, 64, alone, 137).front(), whole.front());
+}
+
+TEST(OcclusionMask, IsTheSameWhenWalksAmongHolesAreResumed) {
+  // Every test of such a triangle is a loop of its own.
+  Scene scene = *scenes::load("boxes");
+  Texture texture{"checks", 2, 2, {}};
+  for (int texel = 0; texel < 4; ++texel)
+    texture.rgba.insert(texture.rgba.end(),
+                        {255, 255, 255, std::uint8_t(texel % 3 == 0 ? 255 : 0)});
+  Material material;
+  material.name = "checks";
+  material.texture = static_cast<int>(scene.textures.size());
+  material.alpha_mode = AlphaMode::mask;
+  scene.textures.push_back(texture);
+  scene.materials.push_back(material);
+  scene.lights.resize(1);
+  scene.lights.front().extent.kind = ExtentKind::disc;
+  scene.lights.front().extent.radius = 0.3;
+  const auto dusty = with_dust(scene, 3000, static_cast<std::uint32_t>(scene.materials.size()) - 1);
+  Tracer tracer(dusty);
+  const Embree embree(tracer.scene());
+  const CameraMatrices camera =
+      camera_matrices(dusty->cameras.front(), tracer.scene().origin(), 1.0, 1.0);
+  const auto receivers = embree.receivers(camera, 32);
+  const Light& light = dusty->lights.front();
+  const auto points = light_points(world_light(light, tracer.scene().origin()), 64, 1, 3, false);
+  const auto usual = tracer.masks(light, receivers, 32, points);
+  EXPECT_EQ(tracer.masks(light, receivers, 32, points, 300), usual);
+  EXPECT_EQ(tracer.masks(light, receivers, 32, points, 40), usual);
+  EXPECT_EQ(tracer.unfinished(), 0u);
 }
 
 TEST(OcclusionMask, HidesEveryPointThatABatchDoesNotHave) {

@@ -136,13 +136,15 @@ TEST_F(PicturesInParts, AverageRoundsOfPointsToTheMeanOfAll) {
 
 TEST_F(PicturesInParts, BeginWithAsFewPointsOfASampleAsABatchHas) {
   // 256 points are 16 of each of 16 samples: the rounds to come have several batches.
-  RenderRequest wanted = request("boxes", "reference", 16, 4096);
+  RenderRequest wanted = request("boxes", "reference", 32, 4096);
   wanted.supersampling = 16;
   const RenderResult at_once = renderer_->render(wanted);
   wanted.error_bound = 1e-6;
   const RenderResult in_rounds = renderer_->render(wanted);
   EXPECT_EQ(in_rounds.light_samples, 4096u);
   EXPECT_LE(tests::rms_y(in_rounds.picture, at_once.picture), 0.25);
+  // Nor may a window see what the one before it has found.
+  EXPECT_LE(tests::rms_y(in_windows_->render(wanted).picture, at_once.picture), 0.25);
 }
 
 TEST_F(PicturesInParts, StopOnceTheErrorIsWithinItsBound) {
