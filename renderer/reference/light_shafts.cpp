@@ -1,9 +1,9 @@
 #include "renderer/reference/light_shafts.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "renderer/reference/occlusion_mask.h"
+#include "renderer/scene/scene.h"
 
 namespace penumbra::reference {
 
@@ -11,18 +11,8 @@ using shader::points_per_batch;
 
 namespace {
 
-struct ExtentBox {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()};
-  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-
-  void add(const glm::dvec3& point) {
-    low = glm::min(low, point);
-    high = glm::max(high, point);
-  }
-};
-
 /// Box around the whole extent: positions, or directions of any length.
-ExtentBox extent_box(const WorldLight& light) {
+Bounds extent_box(const WorldLight& light) {
   const glm::dvec3 half = extent_half_size(*light.source);
   const glm::dvec3 reach = glm::abs(light.right) * half.x + glm::abs(light.up) * half.y +
                            glm::abs(light.direction) * half.z;
@@ -37,7 +27,7 @@ double unit_of_points(const PrepareContext& context) {
 
 /// Widens a box by what rounding of points and receivers may do: that grows with their coordinates,
 /// or is that of unit directions at infinity, where `w` of the light's centre is 0.
-void widen(ExtentBox& box, double w, const GpuScene& scene) {
+void widen(Bounds& box, double w, const GpuScene& scene) {
   const glm::dvec3 reached(glm::max(glm::abs(scene.low()), glm::abs(scene.high())));
   const glm::dvec3 far = glm::max(glm::max(glm::abs(box.low), glm::abs(box.high)),
                                   double{scene.inverse_size()} * reached);
@@ -77,9 +67,9 @@ std::vector<glm::vec4> points_of(const PrepareContext& context, std::uint32_t se
 shader::ShaftData shaft_data(const PrepareContext& context, std::uint32_t set) {
   shader::ShaftData data{};
   const std::vector<glm::vec4> points = points_of(context, set);
-  ExtentBox batch;
+  Bounds batch;
   for (std::uint32_t i = 0; i < context.points_in_batch; ++i) batch.add(glm::dvec3(points[i]));
-  ExtentBox whole = extent_box(context.light);
+  Bounds whole = extent_box(context.light);
   whole.low *= unit_of_points(context);
   whole.high *= unit_of_points(context);
   widen(batch, context.light.center.w, context.scene);
@@ -98,14 +88,14 @@ std::array<shader::BatchBox, shader::batch_bits> batch_boxes(const PrepareContex
   const std::size_t sets = context.points.size() / points_per_batch;
   const std::size_t in_set = context.all_points.size() / sets;
   const auto points = context.all_points.subspan(set * in_set, in_set);
-  std::array<ExtentBox, shader::batch_bits> boxes;
+  std::array<Bounds, shader::batch_bits> boxes;
   for (std::uint32_t i = 0; i < in_set; ++i)
     boxes[bit_of(context, i / points_per_batch)].add(unit_of_points(context) *
                                                      glm::dvec3(points[i]));
   std::array<shader::BatchBox, shader::batch_bits> data;
   for (std::size_t bit = 0; bit < boxes.size(); ++bit) {
     // Bits that no batch has are asked for as well.
-    ExtentBox box = bit <= bit_of(context, context.batches - 1) ? boxes[bit] : boxes[0];
+    Bounds box = bit <= bit_of(context, context.batches - 1) ? boxes[bit] : boxes[0];
     widen(box, context.light.center.w, context.scene);
     data[bit].middle = glm::vec4(0.5 * box.low + 0.5 * box.high, 0.0);
     data[bit].half_size = glm::vec4(0.5 * box.high - 0.5 * box.low, 0.0);

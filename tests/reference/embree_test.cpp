@@ -100,6 +100,14 @@ TEST(OcclusionMask, AgreesWithEmbreeAroundASphereOfLightBetweenTheBoxes) {
   expect_agreement(compare(std::make_shared<const Scene>(scene), 64));
 }
 
+Scene boxes_under_a_disc() {
+  Scene scene = *scenes::load("boxes");
+  scene.lights.resize(1);
+  scene.lights.front().extent.kind = ExtentKind::disc;
+  scene.lights.front().extent.radius = 0.3;
+  return scene;
+}
+
 /// The scene with so many specks of dust before its first light, of a size that leaves most of the
 /// light: a walk towards a batch of points meets a share of them and finds no end before the last.
 std::shared_ptr<const Scene> with_dust(Scene scene, std::uint32_t count,
@@ -134,10 +142,7 @@ std::shared_ptr<const Scene> with_dust(Scene scene, std::uint32_t count,
 }
 
 TEST(OcclusionMask, AgreesWithEmbreeWhereWalksAreLongerThanDriversLetLoopsBe) {
-  Scene scene = *scenes::load("boxes");
-  scene.lights.resize(1);
-  scene.lights.front().extent.kind = ExtentKind::disc;
-  scene.lights.front().extent.radius = 0.3;
+  const Scene scene = boxes_under_a_disc();
   const Verdict verdict = compare(with_dust(scene, 40000), 64, 48);
   // Of the 4000 rays that dust alone hides, one in a hundred passes an edge of its specks of 2 mm
   // by less than floats tell; a sixteenth as many specks, four times as large, leave a quarter of
@@ -164,7 +169,7 @@ TEST(OcclusionMask, IsTheSameWhenTheHierarchyIsWalkedInParts) {
 
 TEST(OcclusionMask, IsTheSameWhenWalksAmongHolesAreResumed) {
   // Every test of such a triangle is a loop of its own.
-  Scene scene = *scenes::load("boxes");
+  Scene scene = boxes_under_a_disc();
   Texture texture{"checks", 2, 2, {}};
   for (int texel = 0; texel < 4; ++texel)
     texture.rgba.insert(texture.rgba.end(),
@@ -175,9 +180,6 @@ TEST(OcclusionMask, IsTheSameWhenWalksAmongHolesAreResumed) {
   material.alpha_mode = AlphaMode::mask;
   scene.textures.push_back(texture);
   scene.materials.push_back(material);
-  scene.lights.resize(1);
-  scene.lights.front().extent.kind = ExtentKind::disc;
-  scene.lights.front().extent.radius = 0.3;
   const auto dusty = with_dust(scene, 3000, static_cast<std::uint32_t>(scene.materials.size()) - 1);
   Tracer tracer(dusty);
   const Embree embree(tracer.scene());
